@@ -6,13 +6,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
 #include <utility>
 
-#include "colour.h"
 #include "common.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/nearest.h"

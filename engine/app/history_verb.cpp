@@ -17,7 +17,6 @@
 #include "laboratory/store/store.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/units.h"
-#include "printable.h"
 #include "text_layout.h"
 #include "verbs.h"
 

@@ -10,8 +10,8 @@
 #include "nonio/sdk/format.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
-#include "printable.h"
 #include "site_words.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {

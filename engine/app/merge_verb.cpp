@@ -7,15 +7,12 @@
 #include <memory>
 
 #include "axis_argument.h"
-#include "campaign/config/table_files.h"
+#include "campaign/config/site_files.h"
 #include "campaign/planning/plan.h"
 #include "campaign/tables/control_state.h"
-#include "insert.h"
 #include "insert_set.h"
-#include "later_campaigns.h"
 #include "platform/storage/files.h"
 #include "questions.h"
-#include "state_record.h"
 #include "table_common.h"
 #include "verbs.h"
 

@@ -10,11 +10,11 @@
 #include <sstream>
 
 #include "campaign/evaluation/record.h"
-#include "colour.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/packed_results.h"
-#include "results_folder.h"
+#include "shown_results.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {

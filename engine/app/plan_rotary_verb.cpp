@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "axis_argument.h"
-#include "campaign/planning/plan_rotary.h"
+#include "campaign/planning/plan.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/json_values.h"
 #include "site_words.h"

@@ -191,11 +191,10 @@ Expected<PointTable> grid_of(const ProgramWish& p) {
   rows.columns.push_back({"n", Quantity::count, {static_cast<double>(n)}});
   for (const auto& [option, text, name] :
        {std::tuple{"--step-x", &p.step_x, "step_x"}, {"--step-y", &p.step_y, "step_y"}}) {
-    const auto step = length_of(option, *text);
-    if (!step) return fail(step.error());
-    if (!(*step > 0.0 && *step < 1e3))
+    NONIO_TRY(const auto step, length_of(option, *text));
+    if (!(step > 0.0 && step < 1e3))
       return fail(std::string(option) + ": expected more than 0 mm, found \"" + *text + "\"");
-    rows.columns.push_back({name, Quantity::length, {*step}});
+    rows.columns.push_back({name, Quantity::length, {step}});
   }
   return rows;
 }

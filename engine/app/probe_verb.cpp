@@ -86,9 +86,8 @@ Expected<std::vector<Observations>> raw_readings(const OpenCampaign& open,
     if (c.info.name != campaign.machine.control) continue;
     const auto options = campaign_options(open, c.info, {});
     if (!options) return fail(options.error().front());
-    const auto on = tables::active_compensation(open.read, c, *options);
-    if (!on) return fail(on.error());
-    return *on ? (*on)->readings : open.read.observations;
+    NONIO_TRY(const auto on, tables::active_compensation(open.read, c, *options));
+    return on ? on->readings : open.read.observations;
   }
   return fail(
       "the campaign states an active table and not of which control it is: state control "

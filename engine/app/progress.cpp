@@ -7,7 +7,6 @@
 #include <cmath>
 #include <iostream>
 
-#include "colour.h"
 #include "common.h"
 #include "platform/storage/json_values.h"
 #include "text_layout.h"

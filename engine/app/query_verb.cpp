@@ -8,7 +8,6 @@
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/json_values.h"
-#include "printable.h"
 #include "site_words.h"
 #include "text_layout.h"
 #include "verbs.h"

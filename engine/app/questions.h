@@ -43,4 +43,8 @@ class Questions {
   bool asks_, ended_ = false;
 };
 
+/// Reads a password from the terminal without echo, or one line of standard input. The prompt names
+/// the person `whose`.
+Expected<std::string> read_password(const std::string& whose);
+
 }  // namespace nonio::app

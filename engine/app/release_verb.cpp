@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "batch/release/release.h"
-#include "password_input.h"
 #include "platform/storage/json_values.h"
 #include "progress.h"
+#include "questions.h"
 #include "site_words.h"
 #include "text_layout.h"
 #include "verbs.h"

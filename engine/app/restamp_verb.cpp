@@ -4,7 +4,7 @@
 
 #include "certificates/restamp.h"
 #include "platform/storage/json_values.h"
-#include "printable.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {

@@ -3,9 +3,9 @@
 #include <iostream>
 #include <memory>
 
-#include "certificates/password.h"
+#include "certificates/users.h"
 #include "live/server.h"
-#include "password_input.h"
+#include "questions.h"
 #include "verbs.h"
 
 namespace nonio::app {

@@ -9,13 +9,11 @@
 
 #include "campaign/config/terminal_words.h"
 #include "campaign/evaluation/record.h"
-#include "colour.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/withheld.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 #include "platform/storage/packed_results.h"
-#include "results_folder.h"
 #include "shown_results.h"
 #include "text_layout.h"
 #include "verbs.h"

@@ -3,25 +3,25 @@
 
 #include "batch/state/run_state.h"
 #include "campaign/config/template_files.h"
+#include "campaign/evaluation/evaluate.h"
 #include "campaign/evaluation/evaluation.h"
 #include "campaign/evaluation/record.h"
 #include "campaign/evaluation/results_json.h"
 #include "certificates/certificate_list.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_numbers.h"
-#include "results_folder.h"
+#include "platform/storage/packed_results.h"
 
 namespace nonio::app {
 using storage::Json;
 namespace fs = std::filesystem;
 
 Expected<Shown> evaluated_now(const fs::path& folder, const Common& common, Documents documents) {
-  auto place = reading::open_workplace(folder, common.plugin_folders(), common.template_folders(),
-                                       NONIO_VERSION);
-  if (!place) return fail(place.error());
+  NONIO_TRY(auto place, reading::open_workplace(folder, common.plugin_folders(),
+                                                common.template_folders(), NONIO_VERSION));
   if (!common.quiet)
-    for (const std::string& note : (*place)->notes) complain(note);
-  const reading::Context& context = (*place)->context;
+    for (const std::string& note : place->notes) complain(note);
+  const reading::Context& context = place->context;
   const reading::Stage stage = [](const std::string&) {};
   evaluation::AnalysedCampaign analysed = evaluation::analyse(
       reading::read_campaign(folder, context, stage), id_of_campaign(folder), context, stage, {});
@@ -33,23 +33,21 @@ Expected<Shown> evaluated_now(const fs::path& folder, const Common& common, Docu
   std::vector<std::string> notes;
   if (const std::string& language = context.site.language; language != "en")
     notes = evaluation::notes_in(language, evaluated.results, context.templates);
-  return Shown{std::move(text), std::move((*place)->context.templates), context.site.language,
+  return Shown{std::move(text), std::move(place->context.templates), context.site.language,
                std::move(observations), std::move(notes)};
 }
 
 Expected<Shown> of_run(const fs::path& folder, const Common& common) {
-  auto text = storage::read_file(folder / evaluation::results_name);
-  if (!text) return fail(text.error());
+  NONIO_TRY(auto text, storage::read_file(folder / evaluation::results_name));
   std::string language = "en", digest;
   std::vector<std::string> notes;
   if (auto record = evaluation::read_record(folder); record && !record->language.empty()) {
     language = record->language;
     notes = std::move(record->notes);
   }
-  auto templates = config::read_templates(common.template_folders(), digest, nullptr, {},
-                                          config::words_in(language));
-  if (!templates) return fail(templates.error());
-  return Shown{std::move(*text), std::move(*templates), language, {}, std::move(notes)};
+  NONIO_TRY(auto templates, config::read_templates(common.template_folders(), digest, nullptr, {},
+                                                   config::words_in(language)));
+  return Shown{std::move(text), std::move(templates), language, {}, std::move(notes)};
 }
 
 Json results_of(const Shown& shown) {
@@ -89,6 +87,45 @@ Finding finding_of(const Json& json) {
   f.advice = json.value("advice", "");
   f.measurement = json.value("measurement", "");
   return f;
+}
+
+namespace fs = std::filesystem;
+
+Holds what_holds(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / config::manifest_name, error)) return Holds::campaign;
+  if (storage::is_there(folder / evaluation::results_name).value_or(false)) return Holds::results;
+  if (fs::exists(folder / "summary.json", error)) return Holds::run;
+  return Holds::nothing;
+}
+
+fs::path results_at(const fs::path& folder) {
+  if (what_holds(folder) != Holds::nothing) return folder;
+  fs::path path = fs::absolute(folder).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  const fs::path above = path.parent_path();
+  for (const fs::path& out : {above, above.parent_path()}) {
+    const std::string id = path.filename().string();
+    if (storage::own_folder(out, id) != path) continue;
+    if (fs::path place = storage::results_folder(out, id); place != path) return place;
+  }
+  return folder;
+}
+
+std::string holds_nothing(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) return "there is no folder " + folder.string();
+  return folder.string() +
+         " is neither a campaign (campaign.toml) nor what `nonio run` left of one (results.json)";
+}
+
+std::string id_of_campaign(const fs::path& folder) {
+  std::string id;
+  if (const auto text = storage::read_file(folder / config::manifest_name)) {
+    const auto manifest = config::parse_without_methods(*text, config::manifest_name);
+    id = manifest ? manifest->campaign.id : config::extract_id(*text);
+  }
+  return id.empty() ? fs::absolute(folder).lexically_normal().filename().string() : id;
 }
 
 }  // namespace nonio::app

@@ -39,4 +39,15 @@ bool is_out_of_force(const std::filesystem::path& results, const std::string& nu
 /// Converts a finding of results.json. The values of its evidence are converted to SI units.
 Finding finding_of(const nlohmann::ordered_json& json);
 
+enum class Holds { campaign, results, run, nothing };
+Holds what_holds(const std::filesystem::path& folder);
+
+/// Returns the path in the pack if the results of the folder OUT/ID are packed, otherwise `folder`.
+std::filesystem::path results_at(const std::filesystem::path& folder);
+/// Returns the error message for a folder without campaign.toml, results.json and summary.json.
+std::string holds_nothing(const std::filesystem::path& folder);
+
+/// Returns the id that a run gives to the campaign, even if its manifest has other errors.
+std::string id_of_campaign(const std::filesystem::path& folder);
+
 }  // namespace nonio::app

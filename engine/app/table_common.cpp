@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "campaign/config/table_files.h"
+#include "campaign/config/site_files.h"
 #include "campaign/planning/plan.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/nearest.h"

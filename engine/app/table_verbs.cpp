@@ -2,9 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <functional>
 #include <iostream>
-#include <map>
 #include <memory>
 
 #include "axis_argument.h"

@@ -5,8 +5,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <sstream>
+#include <string_view>
+
+#include "platform/storage/characters.h"
 
 namespace nonio::app {
 
@@ -94,6 +101,75 @@ std::vector<std::string> table_rows(const std::vector<std::vector<std::string>>&
     out.push_back(text + "\n");
   }
   return out;
+}
+
+using storage::Character;
+
+namespace {
+
+std::string escaped(const char* format, std::uint32_t code) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), format, code);
+  return text.data();
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const Character c = storage::first_of(text);
+    const std::size_t size = c.size == 0 ? 1 : c.size;
+    if (c.size == 0)
+      out += escaped("\\x%02x", static_cast<unsigned char>(text.front()));
+    else if (storage::is_shown(c.code))
+      out += text.substr(0, size);
+    else
+      out += escaped(c.code < 0x100 ? "\\x%02x" : "\\u%04x", c.code);
+    text.remove_prefix(size);
+  }
+  return out;
+}
+
+namespace {
+
+bool shows_colours(int descriptor) {
+  const char* const no = std::getenv("NO_COLOR");
+  if (no != nullptr && *no != '\0') return false;
+  const char* const terminal = std::getenv("TERM");
+  return terminal != nullptr && std::string_view(terminal) != "dumb" && ::isatty(descriptor) == 1;
+}
+
+const char* code_of(Colour colour) {
+  switch (colour) {
+    case Colour::red:
+      return "31";
+    case Colour::yellow:
+      return "33";
+    case Colour::green:
+      return "32";
+    case Colour::bold:
+      break;
+  }
+  return "1";
+}
+
+}  // namespace
+
+std::string coloured(const std::string& text, Colour colour, int descriptor) {
+  if (!shows_colours(descriptor)) return text;
+  return std::string("\033[") + code_of(colour) + "m" + text + "\033[0m";
+}
+
+Colour status_colour(const std::string& status) {
+  if (status == "failed" || status == "does not conform") return Colour::red;
+  return status == "ok" || status == "conforms" ? Colour::green : Colour::yellow;
+}
+
+std::string status_word(const std::string& status, int descriptor) {
+  std::string word = status;
+  word.resize(std::max<std::size_t>(word.size(), 9), ' ');
+  return coloured(word, status_colour(status), descriptor);
 }
 
 }  // namespace nonio::app

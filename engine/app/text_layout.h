@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace nonio::app {
@@ -29,5 +30,20 @@ std::string wrapped(const std::string& text, std::size_t indent, std::size_t wid
 /// cells.
 std::vector<std::string> table_rows(const std::vector<std::vector<std::string>>& rows,
                                     std::size_t width);
+
+/// Makes text from other sources safe for a terminal: control characters, direction marks,
+/// invisible characters and invalid UTF-8 become escapes such as \x1b or \u202e.
+std::string printable(std::string_view text);
+
+enum class Colour { red, yellow, green, bold };
+
+/// Adds the escape sequences of a color if the file descriptor is a terminal with colors and
+/// NO_COLOR (no-color.org) is not set. Not for JSON or files.
+std::string coloured(const std::string& text, Colour colour, int descriptor);
+
+/// Returns the color of a campaign status (ok, attention, failed) or of a conformity decision.
+Colour status_colour(const std::string& status);
+/// Returns the status in its color, padded to at least 9 characters.
+std::string status_word(const std::string& status, int descriptor);
 
 }  // namespace nonio::app

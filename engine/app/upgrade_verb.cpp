@@ -8,7 +8,7 @@
 #include "campaign/config/upgrade.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
-#include "results_folder.h"
+#include "shown_results.h"
 #include "verbs.h"
 
 namespace nonio::app {

@@ -13,7 +13,6 @@
 #include "platform/process/apart.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
-#include "printable.h"
 #include "site_words.h"
 #include "text_layout.h"
 #include "verbs.h"

@@ -5,38 +5,116 @@
 #include <array>
 #include <memory>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "batch/close/history_update.h"
 #include "batch/close/mail.h"
-#include "batch/close/run_history.h"
 #include "batch/close/shown_histories.h"
 #include "batch/close/summary.h"
 #include "batch/close/worklist_update.h"
-#include "batch/commit/leftovers.h"
-#include "batch/commit/refused.h"
 #include "batch/commit/store.h"
-#include "batch/release/one_again.h"
 #include "batch/shards/packed_shard.h"
 #include "batch/shards/parts.h"
 #include "batch/state/output_lock.h"
 #include "batch/state/read_apart.h"
 #include "batch/state/run_plan.h"
+#include "batch/state/run_result.h"
 #include "batch/state/run_state.h"
-#include "batch/survey/known_numbers.h"
+#include "batch/survey/earlier_results.h"
 #include "batch/survey/survey.h"
 #include "batch/workers/runner.h"
 #include "batch/workers/set_up.h"
+#include "campaign/reading/context.h"
 #include "platform/storage/database.h"
 #include "platform/storage/disk.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
 
 namespace nonio::batch {
+
 namespace fs = std::filesystem;
 
 namespace {
 
+namespace fs = std::filesystem;
 using Action = CampaignState::Action;
+
+/// Marks the campaign with the folder or id `options.only` for evaluation and restores the outcome
+/// of all others from their records. Returns its id. An error unless exactly one campaign matches.
+Expected<std::string> leave_only(const RunOptions& options, const RunState& state, RunResult& run) {
+  std::error_code error;
+  std::string below = fs::path(options.only).lexically_normal().generic_string();
+  while (below.ends_with('/')) below.pop_back();
+  const std::string from_here = fs::weakly_canonical(options.only, error)
+                                    .lexically_relative(fs::weakly_canonical(options.site, error))
+                                    .generic_string();
+  std::size_t found = 0;
+  std::string one;
+  for (CampaignState& c : run.campaigns) {
+    const std::string folder = fs::path(c.folder).generic_string();
+    const bool is_one =
+        c.is_campaign && (c.id == options.only || folder == below || folder == from_here);
+    if (is_one) ++found, one = c.id;
+    if (is_one && c.action != Action::todo) {
+      c.action = Action::todo;
+      c.status = evaluation::Status::none;
+      c.errors = {};
+      c.reason = "--only";
+    }
+    if (is_one || c.action != Action::todo) continue;
+    const auto record = evaluation::read_record(storage::results_folder(options.out, c.id));
+    const bool last_run = record && record->run == state.number;
+    c.action = last_run ? Action::done : Action::unchanged;
+    c.status = record ? record->status : evaluation::Status::none;
+    c.errors = record ? record->errors : std::vector<Error>{};
+    c.reason = last_run ? record->reason : "nothing changed";
+  }
+  if (found == 1) return one;
+  return fail("--only: there is " + std::string(found == 0 ? "no" : "more than one") +
+              " campaign with the folder or id \"" + options.only + "\" in this site");
+}
+
+/// Removes campaigns that were added to the site after the reopened run; the next run evaluates
+/// them.
+void leave_out_new(const RunState& state, std::vector<CampaignState>& campaigns) {
+  if (!state.reopened) return;
+  std::erase_if(campaigns, [](const CampaignState& c) {
+    return c.action != Action::todo && c.status == evaluation::Status::none;
+  });
+}
+
+/// Stores failed results of campaigns that the survey rejected, but keeps good results of an
+/// earlier run. Of several campaigns with the same id only the first is stored, because they share
+/// a folder.
+void store_refused(const RunOptions& options, const reading::Context& context, const RunState& run,
+                   const RunEvents& events, std::vector<CampaignState>& campaigns) {
+  const storage::Disk disk(options.out);
+  const CampaignState* before = nullptr;
+  for (CampaignState& c : campaigns) {
+    if (c.action != Action::todo || c.status != evaluation::Status::failed) continue;
+    const auto record = evaluation::read_record(storage::results_folder(options.out, c.id));
+    const bool stays = c.is_campaign && record && record->status != evaluation::Status::failed;
+    std::vector<Error> errors = c.errors;
+    if (stays)
+      errors.front().message +=
+          "; the results of run " + std::to_string(record->run) + " stay as they are";
+    if (c.is_campaign && !stays && (before == nullptr || before->id != c.id)) {
+      evaluation::Evaluated evaluated;
+      evaluated.campaign.id = c.id;
+      evaluated.status = evaluation::Status::failed;
+      evaluated.results.errors = errors;
+      if (const auto stored =
+              store(options.out, evaluated, context, {c.folder, run.of(), c.reason, true}, disk);
+          !stored)
+        errors.push_back(stored.error());
+    }
+    c.errors = std::move(errors);
+    before = &c;
+    c.action = Action::done;
+    events.finished(c);
+  }
+}
 
 bool is_todo(const CampaignState& c) { return c.action == Action::todo; }
 

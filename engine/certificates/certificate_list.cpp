@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "campaign/config/site_files.h"
-#include "certificates/person_name.h"
 #include "certificates/register_place.h"
+#include "certificates/users.h"
 #include "nonio/sdk/statement.h"
 #include "platform/storage/files.h"
 

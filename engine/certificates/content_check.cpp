@@ -10,7 +10,6 @@
 
 #include "campaign/config/template_files.h"
 #include "campaign/evaluation/evaluation.h"
-#include "campaign/evaluation/issue_json.h"
 #include "campaign/evaluation/record.h"
 #include "campaign/evaluation/results_json.h"
 #include "campaign/reading/campaign_reader.h"
@@ -18,7 +17,6 @@
 #include "certificates/certificates.h"
 #include "certificates/numbering.h"
 #include "certificates/recomputed.h"
-#include "platform/process/apart.h"
 #include "platform/process/child.h"
 #include "platform/process/guarded.h"
 #include "platform/process/shared_status.h"
@@ -26,7 +24,6 @@
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
-#include "platform/storage/scratch_folder.h"
 
 namespace nonio::certificates {
 namespace fs = std::filesystem;

@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
-#include <vector>
 
 #include "platform/storage/digest.h"
 

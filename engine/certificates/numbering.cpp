@@ -1,26 +1,159 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "certificates/numbering.h"
 
+#include <toml++/toml.h>
+
 #include <algorithm>
+#include <map>
+#include <sstream>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "campaign/evaluation/results_json.h"
 #include "campaign/reading/plausibility/plausibility.h"
 #include "campaign/reading/plausibility/traceability.h"
-#include "certificates/amendment.h"
 #include "certificates/certificates.h"
 #include "certificates/journal.h"
 #include "certificates/recomputed.h"
 #include "certificates/register_place.h"
+#include "nonio/sdk/results.h"
 #include "nonio/sdk/statement.h"
 #include "nonio/sign/verify.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 
 namespace nonio::certificates {
+
 namespace fs = std::filesystem;
 
 namespace {
+
+inline constexpr std::size_t most_changes = 40;
+
+/// If only this key has changed, the file is reported as unchanged.
+inline constexpr const char* amendment_key = "certificate.amendment";
+
+using Keys = std::map<std::string, std::string>;
+
+std::string toml_text(const toml::node& node) {
+  if (const auto text = node.value_exact<std::string>()) return *text;
+  std::ostringstream out;
+  node.visit([&](const auto& value) { out << value; });
+  return out.str();
+}
+
+void flatten(const toml::node& node, const std::string& place, Keys& out) {
+  const auto below = [&](std::string_view key) {
+    return place.empty() ? std::string(key) : place + "." + std::string(key);
+  };
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, value] : *table) flatten(value, below(key.str()), out);
+    return;
+  }
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->empty() || !list->is_homogeneous(toml::node_type::table)) {
+    out[place] = toml_text(node);
+    return;
+  }
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const toml::table& one = *list->get_as<toml::table>(i);
+    std::string name = one["id"].value_or(std::to_string(i + 1));
+    if (out.contains(below(name) + ".id")) name += "(" + std::to_string(i + 1) + ")";
+    flatten(one, below(name), out);
+  }
+}
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    lines.emplace_back(line);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+bool is_text(std::string_view bytes) {
+  constexpr std::size_t longest_line = 500;
+  std::size_t line = 0;
+  for (const char c : bytes) {
+    line = c == '\n' ? 0 : line + 1;
+    if (c == '\0' || line > longest_line) return false;
+  }
+  return true;
+}
+
+class ChangeList {
+ public:
+  explicit ChangeList(FileChange& into) : into_(into) {}
+  void add(Change change) {
+    if (into_.changes.size() < most_changes)
+      into_.changes.push_back(std::move(change));
+    else
+      ++into_.more;
+  }
+
+ private:
+  FileChange& into_;
+};
+
+void compare_keys(const Keys& before, const Keys& after, FileChange& out) {
+  ChangeList list(out);
+  for (const auto& [key, value] : after) {
+    const auto old = before.find(key);
+    if (key == amendment_key || (old != before.end() && old->second == value)) continue;
+    list.add({key, 0, old == before.end() ? std::nullopt : std::optional(old->second), value});
+  }
+  for (const auto& [key, value] : before)
+    if (key != amendment_key && !after.contains(key)) list.add({key, 0, value, std::nullopt});
+}
+
+/// Between the equal lines at both ends, lines are compared one by one if the files have the same
+/// number of lines; otherwise all removed and all new lines are listed.
+void compare_lines(const std::vector<std::string>& a, const std::vector<std::string>& b,
+                   FileChange& out) {
+  ChangeList list(out);
+  std::size_t begin = 0, end = 0;
+  const std::size_t shorter = std::min(a.size(), b.size());
+  while (begin < shorter && a[begin] == b[begin]) ++begin;
+  while (end < shorter - begin && a[a.size() - 1 - end] == b[b.size() - 1 - end]) ++end;
+  if (a.size() == b.size()) {
+    for (std::size_t i = begin; i < a.size() - end; ++i)
+      if (a[i] != b[i]) list.add({{}, i + 1, a[i], b[i]});
+    return;
+  }
+  for (std::size_t i = begin; i < a.size() - end; ++i) list.add({{}, i + 1, a[i], std::nullopt});
+  for (std::size_t i = begin; i < b.size() - end; ++i) list.add({{}, i + 1, std::nullopt, b[i]});
+}
+
+/// Returns keys with values, for example "machine.axes.X.tolerance_um.B" -> "3". Tables of a list
+/// are named by their `id`, or without `id` by their position, counted from 1. Empty if the text is
+/// not TOML.
+std::map<std::string, std::string> flat_toml(std::string_view text) {
+  Keys out;
+  try {
+    flatten(toml::parse(text), "", out);
+  } catch (const toml::parse_error&) {
+    out.clear();
+  }
+  return out;
+}
+
+/// Lists the differences between two versions of a file, at most `most_changes`: keys of a TOML
+/// file, lines of a text, nothing for other files. If `before` or `after` is null, the file is new
+/// or was removed.
+FileChange change_of(const std::string& file, const std::string* before, const std::string* after) {
+  FileChange change{file};
+  if (before == nullptr || after == nullptr) return change;
+  if (file.ends_with(".toml"))
+    compare_keys(flat_toml(*before), flat_toml(*after), change);
+  else if (is_text(*before) && is_text(*after))
+    compare_lines(lines_of(*before), lines_of(*after), change);
+  return change;
+}
 
 /// A certificate must not change with other campaigns or with the machine's record.
 bool is_foreign(const std::string& input) {

@@ -2,11 +2,10 @@
 #include "certificates/register.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "campaign/config/number_pattern.h"
-#include "campaign/evaluation/issue_json.h"
+#include "campaign/evaluation/results_json.h"
 #include "certificates/journal.h"
 #include "certificates/register_place.h"
 #include "certificates/register_tables.h"
@@ -60,34 +59,29 @@ Register::~Register() = default;
 
 Expected<Register> Register::open(const fs::path& site, const config::Numbering& numbering,
                                   double patience) {
-  const auto place = register_place(site, numbering);
-  if (!place) return fail(place.error());
-  auto database = open_register(*place, storage::Database::Use::create, patience);
-  if (!database) return fail(database.error());
-  return Register(std::make_unique<storage::Database>(std::move(*database)), *place,
+  NONIO_TRY(const auto place, register_place(site, numbering));
+  NONIO_TRY(auto database, open_register(place, storage::Database::Use::create, patience));
+  return Register(std::make_unique<storage::Database>(std::move(database)), place,
                   numbering.pattern);
 }
 
 Expected<Register> Register::open_to_audit(const fs::path& site,
                                            const config::Numbering& numbering) {
-  const auto place = register_place(site, numbering);
-  if (!place) return fail(place.error());
-  auto database = open_register(*place, storage::Database::Use::create,
-                                storage::Database::usual_patience, true);
-  if (!database) return fail(database.error());
-  return Register(std::make_unique<storage::Database>(std::move(*database)), *place,
+  NONIO_TRY(const auto place, register_place(site, numbering));
+  NONIO_TRY(auto database, open_register(place, storage::Database::Use::create,
+                                         storage::Database::usual_patience, true));
+  return Register(std::make_unique<storage::Database>(std::move(database)), place,
                   numbering.pattern);
 }
 
 Expected<Register> Register::open_to_read(const fs::path& site,
                                           const config::Numbering& numbering) {
-  const auto place = register_place(site, numbering);
-  if (!place) return fail(place.error());
+  NONIO_TRY(const auto place, register_place(site, numbering));
   // Opened for writing, so that an unfinished transaction of a killed process is rolled back.
   auto database =
-      open_register(*place, storage::Database::Use::write, storage::Database::usual_patience);
+      open_register(place, storage::Database::Use::write, storage::Database::usual_patience);
   if (!database) return fail(database.error());
-  return Register(std::make_unique<storage::Database>(std::move(*database)), *place,
+  return Register(std::make_unique<storage::Database>(std::move(*database)), place,
                   numbering.pattern);
 }
 
@@ -125,14 +119,11 @@ namespace {
 Expected<std::optional<Register>> open_if_there(const fs::path& site,
                                                 const config::Numbering& numbering,
                                                 double patience) {
-  const auto place = register_place(site, numbering);
-  if (!place) return fail(place.error());
-  const auto there = has_register(*place, patience);
-  if (!there) return fail(there.error());
-  if (!*there) return std::nullopt;
-  auto opened = Register::open(site, numbering, patience);
-  if (!opened) return fail(opened.error());
-  return std::move(*opened);
+  NONIO_TRY(const auto place, register_place(site, numbering));
+  NONIO_TRY(const auto there, has_register(place, patience));
+  if (!there) return std::nullopt;
+  NONIO_TRY(auto opened, Register::open(site, numbering, patience));
+  return opened;
 }
 
 }  // namespace
@@ -140,19 +131,17 @@ Expected<std::optional<Register>> open_if_there(const fs::path& site,
 Expected<std::vector<RegisterEntry>> Register::entries(const fs::path& site,
                                                        const config::Numbering& numbering,
                                                        double patience) {
-  auto opened = open_if_there(site, numbering, patience);
-  if (!opened) return fail(opened.error());
-  if (!*opened) return std::vector<RegisterEntry>{};
-  return (*opened)->all();
+  NONIO_TRY(auto opened, open_if_there(site, numbering, patience));
+  if (!opened) return std::vector<RegisterEntry>{};
+  return opened->all();
 }
 
 Expected<std::vector<WaitingDraft>> Register::drafts(const fs::path& site,
                                                      const config::Numbering& numbering,
                                                      double patience) {
-  auto opened = open_if_there(site, numbering, patience);
-  if (!opened) return fail(opened.error());
-  if (!*opened) return std::vector<WaitingDraft>{};
-  return (*opened)->all_drafts();
+  NONIO_TRY(auto opened, open_if_there(site, numbering, patience));
+  if (!opened) return std::vector<WaitingDraft>{};
+  return opened->all_drafts();
 }
 
 Expected<std::vector<RegisterEntry>> Register::all() {
@@ -243,18 +232,16 @@ Expected<std::vector<evaluation::IssuedFile>> Register::files_of(std::int64_t id
   if (!is_of_this_version(*database_)) return files;  // a register of version 1 has no journal
   const std::string number = database_->first("SELECT number FROM certificates WHERE id = ?", {id});
   if (files.empty() && number.empty()) return files;
-  const auto says = issued_as_noted(*database_, number);
-  if (!says) return fail(says.error());
-  if (auto same = check_digests(*says, number, files); !same) return fail(same.error());
+  NONIO_TRY(const auto says, issued_as_noted(*database_, number));
+  if (auto same = check_digests(says, number, files); !same) return fail(same.error());
   return files;
 }
 
 Expected<void> Register::note_replaced(std::int64_t id, Issue& issue) {
   issue.replaces_readings =
       database_->first("SELECT readings FROM certificates WHERE id = ?", {id});
-  const auto files = files_of(id);
-  if (!files) return fail(files.error());
-  for (const evaluation::IssuedFile& file : *files)
+  NONIO_TRY(const auto files, files_of(id));
+  for (const evaluation::IssuedFile& file : files)
     if (issue.replaces_file.empty() || file.name.ends_with(".xml")) {
       issue.replaces_file = file.name;
       issue.replaces_sha256 = storage::sha256(file.bytes);
@@ -290,9 +277,8 @@ Expected<evaluation::Certificate> Register::load(std::int64_t id) {
   certificate.output = std::move(row[3]);
   certificate.templates_sha256 = std::move(row[4]);
   certificate.results = std::move(row[5]);
-  auto files = files_of(id);
-  if (!files) return fail(files.error());
-  certificate.files = std::move(*files);
+  NONIO_TRY(auto files, files_of(id));
+  certificate.files = std::move(files);
   certificate.issued = true;
   return certificate;
 }
@@ -325,9 +311,8 @@ Expected<std::optional<evaluation::Certificate>> Register::last(const std::strin
   if (rows.empty() || rows.front()[1] != "issued") return std::nullopt;
   const std::int64_t id = integer(rows.front()[0]);
   if (inputs_of(id) != data) return std::nullopt;
-  auto loaded = load(id);
-  if (!loaded) return fail(loaded.error());
-  return std::move(*loaded);
+  NONIO_TRY(auto loaded, load(id));
+  return loaded;
 }
 
 Expected<std::optional<evaluation::Certificate>> Register::find(const std::string& campaign,
@@ -357,11 +342,10 @@ Expected<evaluation::Certificate> Register::draw(const std::string& campaign,
                                                  const std::string& today) {
   storage::Database& db = *database_;
   storage::Database::Transaction transaction(db);
-  auto issued = last(campaign, data);
-  if (!issued) return fail(issued.error());
-  if (*issued) {
+  NONIO_TRY(auto issued, last(campaign, data));
+  if (issued) {
     if (auto ended = transaction.end(); !ended) return fail(ended.error());
-    return std::move(**issued);
+    return std::move(*issued);
   }
   const auto later =
       db.rows("SELECT number, date FROM certificates WHERE issued IS NOT NULL AND date > ? LIMIT 1",
@@ -379,9 +363,8 @@ Expected<evaluation::Certificate> Register::draw(const std::string& campaign,
       {today, unfinished, campaign});
   Journal journal(db);
   if (drawn.issue.number.empty()) {
-    auto number = next_number(today.substr(0, 4));
-    if (!number) return fail(number.error());
-    drawn.issue.number = std::move(*number);
+    NONIO_TRY(auto number, next_number(today.substr(0, 4)));
+    drawn.issue.number = std::move(number);
     db.rows(
         "INSERT INTO certificates(number, campaign, state, date, reason) "
         "VALUES(?, ?, 'drawn', ?, ?)",

@@ -7,19 +7,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <functional>
-#include <iostream>
 #include <memory>
 #include <utility>
 
-#include "campaign/config/secret_files.h"
-#include "platform/process/channel.h"
-#include "platform/process/child.h"
+#include "campaign/config/site_files.h"
 #include "platform/process/guarded.h"
 #include "platform/process/stop.h"
 #include "platform/process/watched.h"

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "campaign/config/manifest.h"
 #include "nonio/sign/sign.h"

@@ -11,7 +11,6 @@
 #include "campaign/evaluation/record.h"
 #include "certificates/content_check.h"
 #include "certificates/recomputed.h"
-#include "certificates/register_check.h"
 #include "platform/storage/files.h"
 
 namespace nonio::certificates {

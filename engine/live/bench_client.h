@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "live/launcher.h"
+#include "live/tool.h"
 
 namespace nonio::live {
 

@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "campaign/config/manifest.h"
 #include "campaign/config/site_files.h"

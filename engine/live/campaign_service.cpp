@@ -9,8 +9,10 @@
 #include "live/desk.h"
 #include "nonio/workbench/page.h"
 #include "platform/storage/files.h"
+#include "platform/storage/late_library.h"
 
 namespace nonio::live {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -114,9 +116,7 @@ Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish) {
     return fail("--user-header is for a site, and this is a campaign");
   LiveWish settled = wish;
   if (!is_campaign) {
-    auto signs_in = requires_sign_in(wish);
-    if (!signs_in) return fail(signs_in.error());
-    settled.sign_in = *signs_in;
+    NONIO_TRY(settled.sign_in, requires_sign_in(wish));
     if (settled.sign_in && !wish.token_file.empty())
       return fail(
           "--token-file: people sign in at this site (users.toml), so that no token is used");
@@ -126,6 +126,11 @@ Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish) {
                                             wish.own_plugins, wish.version}));
   if (!is_campaign) return site_service(settled, std::move(launcher), std::move(shells));
   return std::make_unique<CampaignService>(wish, std::move(launcher), std::move(shells));
+}
+
+Expected<void> serve(const LiveWish& wish) {
+  const auto server = storage::exported_as<Serve>("libnonio_live_server.so", "nonio_serve");
+  return server ? (**server)(wish) : fail(server.error());
 }
 
 }  // namespace nonio::live

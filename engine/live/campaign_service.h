@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "live/launcher.h"
 #include "live/server.h"
 #include "live/service.h"
+#include "live/tool.h"
 
 namespace nonio::live {
 

@@ -30,15 +30,12 @@
 #include <iostream>
 #include <map>
 #include <mutex>
-#include <string>
 #include <string_view>
 #include <thread>
-#include <vector>
 
 #include "live/campaign_service.h"
 #include "live/guard.h"
 #include "live/random_token.h"
-#include "nonio/sdk/error.h"
 #include "platform/process/channel.h"
 #include "platform/storage/late_library.h"
 
@@ -436,9 +433,8 @@ Expected<void> serve_here(const LiveWish& wish) {
   if (!service) return fail(service.error());
   std::string token;  // empty if users sign in
   if (!(*service)->signs_in()) {
-    auto made = wish.token_file.empty() ? random_token() : token_in(wish.token_file);
-    if (!made) return fail(made.error());
-    token = *std::move(made);
+    NONIO_TRY(auto made, wish.token_file.empty() ? random_token() : token_in(wish.token_file));
+    token = std::move(made);
   }
   const sigset_t ends = block_signals();
   const Post post{front.port(), token, wish.hosts, false, wish.edit, (*service)->signs_in()};

@@ -5,7 +5,6 @@
 
 #include "nonio/workbench/page.h"
 #include "platform/storage/digest.h"
-#include "platform/storage/json_values.h"
 
 namespace nonio::live {
 

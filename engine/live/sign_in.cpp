@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "certificates/password.h"
 #include "live/random_token.h"
 #include "platform/storage/digest.h"
 

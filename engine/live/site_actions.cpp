@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "certificates/certificate_list.h"
-#include "certificates/person_name.h"
+#include "certificates/users.h"
 #include "live/site_service.h"
 #include "platform/storage/files.h"
-#include "platform/storage/scratch_folder.h"
 
 namespace nonio::live {
 namespace fs = std::filesystem;

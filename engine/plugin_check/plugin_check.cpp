@@ -9,16 +9,13 @@
 #include <chrono>
 #include <clocale>
 #include <cstdlib>
-#include <ctime>
-#include <iostream>
 #include <map>
 #include <thread>
 #include <type_traits>
 
 #include "campaign/config/site_files.h"
 #include "campaign/config/template_files.h"
-#include "campaign/loader/plugin_file.h"
-#include "campaign/loader/plugin_symbols.h"
+#include "campaign/loader/plugins.h"
 #include "nonio/sdk/format.h"
 #include "platform/process/child.h"
 #include "platform/process/confine.h"

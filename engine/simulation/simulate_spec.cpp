@@ -5,7 +5,6 @@
 
 #include "campaign/config/formula.h"
 #include "campaign/config/formula_reader.h"
-#include "campaign/config/toml_reader.h"
 #include "platform/storage/nearest.h"
 
 namespace nonio::simulation {

@@ -2,7 +2,6 @@
 #include "nonio/reports/font.h"
 
 #include <algorithm>
-#include <mutex>
 #include <numeric>
 
 #include "font_reader.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "font_outlines.h"
+#include "font_reader.h"
 
 namespace nonio::reports {
 namespace {

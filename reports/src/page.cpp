@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <vector>
 
 #include "nonio/sdk/text.h"
 #include "page_files.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -46,5 +45,23 @@ std::vector<TextLine> wrap(const Glyphs&, double width);
 
 /// Shortens to `width` with an ellipsis if necessary.
 Glyphs shortened(Glyphs, double width, const Font&);
+
+inline constexpr char32_t not_utf8 = 0xFFFFFFFF;
+inline constexpr char32_t acute_above = 0x0301;
+
+/// Decodes a character and advances `i`. An invalid byte gives not_utf8 and is skipped.
+char32_t next_character(std::string_view text, std::size_t& i);
+
+/// Like next_character, with NFC composition of a letter and its marks.
+char32_t next_composed(std::string_view text, std::size_t& i);
+
+bool is_control(char32_t);
+
+/// Letters (Latin, Greek, Cyrillic) over which a separate accent can be set.
+bool bears_accent(char32_t);
+
+/// Line-breaking restrictions next to ideographs (GB/T 15834: punctuation).
+bool begins_no_line(char32_t);
+bool ends_no_line(char32_t);
 
 }  // namespace nonio::reports

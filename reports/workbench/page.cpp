@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/workbench/page.h"
 
-#include <variant>
-
 #include "embedded.h"
 #include "nonio/reports/drawing.h"
 #include "nonio/reports/page.h"

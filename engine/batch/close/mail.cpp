@@ -28,7 +28,7 @@
 #include <utility>
 #include <vector>
 
-#include "campaign/config/secret_files.h"
+#include "campaign/config/site_files.h"
 #include "platform/process/child.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/late_library.h"

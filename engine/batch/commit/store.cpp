@@ -8,13 +8,16 @@
 #include <set>
 #include <utility>
 
-#include "campaign/evaluation/results_files.h"
+#include "batch/state/run_state.h"
+#include "campaign/evaluation/record.h"
 #include "campaign/evaluation/results_json.h"
 #include "laboratory/store/earlier.h"
+#include "platform/process/stop.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 
 namespace nonio::batch {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -318,6 +321,44 @@ Expected<void> tidy(const fs::path& folder) {
   NONIO_TRY(const auto complete, storage::is_there(folder / evaluation::record_name));
   if (!complete) return {};
   return Move::put_away_record_before(folder);
+}
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Expected<void> tidy_below(const fs::path& out, bool hashed) {
+  std::error_code error;
+  for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error)) {
+    if (process::is_stop_requested()) return fail("interrupted");
+    std::error_code ignored;
+    if (!it->is_directory(ignored) || it->is_symlink(ignored)) continue;
+    if (hashed && it->path().filename().string().size() != 2) continue;
+    if (auto tidied = hashed ? tidy_below(it->path(), false) : tidy(it->path()); !tidied)
+      return tidied;
+  }
+  if (error) return fail("cannot read the output folder " + out.string() + ": " + error.message());
+  return {};
+}
+
+}  // namespace
+
+void tidy_root(const fs::path& out) {
+  storage::remove_leftovers(out);
+  storage::remove_leftovers(out / state_folder);
+}
+
+Expected<void> tidy_all(const RunResult& run, const fs::path& out, bool resumed) {
+  tidy_root(out);
+  if (resumed) return tidy_below(out, storage::own_folder(out, "a") != out / "a");
+  for (const CampaignState& c : run.campaigns) {
+    if (process::is_stop_requested()) return fail("interrupted");
+    if (c.action != CampaignState::Action::done || !c.is_campaign) continue;
+    const fs::path folder = storage::own_folder(out, c.id);
+    if (storage::results_folder(out, c.id) != folder) continue;
+    if (auto tidied = tidy(folder); !tidied) return tidied;
+  }
+  return {};
 }
 
 }  // namespace nonio::batch

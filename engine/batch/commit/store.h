@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "batch/state/run_result.h"
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/evaluation/record.h"
 #include "platform/storage/disk.h"
@@ -42,5 +43,13 @@ Expected<void> store(const std::filesystem::path& out, const evaluation::Evaluat
 
 /// Removes temporary files of interrupted runs from the folder. An error names a file that remains.
 Expected<void> tidy(const std::filesystem::path& folder);
+
+/// Removes temporary files of an interrupted run from the output folder and its folder .nonio.
+void tidy_root(const std::filesystem::path& out);
+
+/// Removes temporary files from the output folder and the results folders of campaigns that this
+/// run evaluated; if `resumed`, from all results folders. An error if a stop was requested, a
+/// folder cannot be read or a file cannot be removed.
+Expected<void> tidy_all(const RunResult& run, const std::filesystem::path& out, bool resumed);
 
 }  // namespace nonio::batch

@@ -12,8 +12,6 @@
 #include "campaign/evaluation/record.h"
 #include "certificates/certificate_list.h"
 #include "certificates/journal.h"
-#include "certificates/password.h"
-#include "certificates/person_name.h"
 #include "certificates/register_place.h"
 #include "certificates/users.h"
 #include "nonio/sdk/statement.h"

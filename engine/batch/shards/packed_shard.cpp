@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdio>
 
-#include "campaign/evaluation/results_files.h"
+#include "campaign/evaluation/record.h"
 #include "laboratory/store/earlier.h"
 #include "platform/storage/files.h"
 #include "platform/storage/pack.h"

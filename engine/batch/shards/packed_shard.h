@@ -10,7 +10,7 @@
 
 #include "batch/state/run_plan.h"
 #include "batch/state/run_result.h"
-#include "platform/storage/scratch_folder.h"
+#include "platform/storage/files.h"
 
 namespace nonio::batch {
 

@@ -11,13 +11,13 @@
 #include <thread>
 
 #include "batch/close/shown_histories.h"
-#include "batch/commit/leftovers.h"
+#include "batch/commit/store.h"
 #include "batch/shards/packed_shard.h"
 #include "batch/state/output_lock.h"
 #include "batch/state/read_apart.h"
 #include "batch/workers/runner.h"
 #include "batch/workers/set_up.h"
-#include "campaign/evaluation/results_files.h"
+#include "campaign/evaluation/record.h"
 #include "certificates/numbering.h"
 #include "platform/storage/files.h"
 #include "platform/storage/pack.h"

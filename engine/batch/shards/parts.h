@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "batch/close/history_update.h"
 #include "batch/state/run_plan.h"
 #include "batch/state/run_result.h"

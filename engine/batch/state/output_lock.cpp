@@ -151,9 +151,8 @@ Expected<bool> become_user(const fs::path& out, const fs::path& path, const User
                            const std::string& says) {
   sweep(path, own);
   for (int i = 0; i < 5; ++i) {
-    const auto made = make_user(path, own, says);
-    if (!made) return fail(made.error());
-    if (*made != Made::taken) return *made == Made::done;
+    NONIO_TRY(const auto made, make_user(path, own, says));
+    if (made != Made::taken) return made == Made::done;
     NONIO_TRY(const auto text, read_user(path));
     if (!text) continue;
     const User user = user_in(*text);

@@ -146,11 +146,12 @@ namespace {
 Expected<void> check_site(const storage::Json& json, const std::string& site, const fs::path& out) {
   const std::string known = known_text(json, "site");
   if (known == site) return {};
-  const auto why = read_apart<std::string>(
-      "the site " + known, config::Limits{}.disk_seconds,
-      [&](process::SignsOfLife&) { return Expected<std::string>(other_site(known, site, out)); });
-  if (!why) return fail(why.error());
-  if (!why->empty()) return fail(*why);
+  NONIO_TRY(const auto why,
+            read_apart<std::string>("the site " + known, config::Limits{}.disk_seconds,
+                                    [&](process::SignsOfLife&) {
+                                      return Expected<std::string>(other_site(known, site, out));
+                                    }));
+  if (!why.empty()) return fail(why);
   return {};
 }
 

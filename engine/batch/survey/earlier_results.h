@@ -4,12 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "batch/state/run_result.h"
 #include "batch/survey/site_walk.h"
+#include "campaign/reading/context.h"
+#include "certificates/register.h"
 
 namespace nonio::batch {
 
@@ -43,5 +46,22 @@ std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
                                   const std::vector<SiteWalk::Unlisted>& unlisted,
                                   const std::filesystem::path& out,
                                   std::vector<std::string>& notes);
+
+/// Content of the register before the run.
+struct Known {
+  std::vector<certificates::RegisterEntry> numbers;
+  std::vector<certificates::WaitingDraft> drafts;
+};
+
+/// `first`: before numbers are issued, the hash chain of the journal is checked, and a broken chain
+/// is an error.
+enum class Look { first, again };
+/// Returns std::nullopt if another process has locked the register. An error if it cannot be read,
+/// or if it is stored in the output folder, where it could be lost.
+Expected<std::optional<Known>> known_of(const RunOptions& options, const reading::Context& context,
+                                        Look look = Look::first);
+
+/// Returns the last position in the order of issue, counted from 1; 0 without certificates.
+std::uint64_t issued_so_far(const std::vector<certificates::RegisterEntry>& numbers);
 
 }  // namespace nonio::batch

@@ -13,7 +13,6 @@
 #include "platform/process/channel.h"
 #include "platform/process/child.h"
 #include "platform/storage/files.h"
-#include "platform/storage/real_folder.h"
 
 namespace nonio::batch {
 namespace fs = std::filesystem;

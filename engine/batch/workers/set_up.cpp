@@ -8,7 +8,6 @@
 
 #include "batch/state/read_apart.h"
 #include "batch/workers/runner.h"
-#include "campaign/config/secret_files.h"
 #include "campaign/config/site_files.h"
 #include "campaign/config/template_files.h"
 #include "campaign/reading/names.h"

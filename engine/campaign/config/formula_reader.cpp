@@ -3,7 +3,6 @@
 
 #include "campaign/config/checks.h"
 #include "campaign/config/formula.h"
-#include "campaign/config/toml_reader.h"
 #include "platform/storage/nearest.h"
 
 namespace nonio::config {

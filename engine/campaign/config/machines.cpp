@@ -5,7 +5,6 @@
 
 #include "campaign/config/checks.h"
 #include "campaign/config/site_files.h"
-#include "campaign/config/table_files.h"
 #include "campaign/config/toml_reader.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/digest.h"

@@ -203,4 +203,7 @@ Expected<Settings> parse_settings(std::string_view text, const std::string& file
 /// separate the entries.
 Checked<Settings> options_from(const Info& plugin, const std::map<std::string, std::string>& texts);
 
+/// A key has the value of the campaign, otherwise that of the site, otherwise the default.
+CertificateTexts certificate_of(const CertificateTexts& site, const CertificateTexts& campaign);
+
 }  // namespace nonio::config

@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/config/site_files.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
 #include "campaign/config/causes.h"
 #include "campaign/config/machines.h"
 #include "platform/storage/digest.h"
@@ -8,6 +17,7 @@
 #include "platform/storage/json_values.h"
 
 namespace nonio::config {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -114,6 +124,94 @@ fs::path site_of(const fs::path& campaign) {
   if (const auto site = nearest(has(site_name))) return *site;
   if (auto site = nearest(has(machines_folder))) return *site;
   return nearest(has(causes_folder)).value_or(campaign);
+}
+
+namespace {
+
+template <class Read>
+Expected<std::vector<Artifact>> read_list(const std::string& list, const Read& read) {
+  std::vector<Artifact> files;
+  for (std::size_t from = 0; from <= list.size();) {
+    const std::size_t comma = std::min(list.find(',', from), list.size());
+    const std::filesystem::path path = list.substr(from, comma - from);
+    NONIO_TRY(auto bytes, read(path));
+    files.push_back({path.filename().string(), std::move(bytes)});
+    from = comma + 1;
+  }
+  return files;
+}
+
+}  // namespace
+
+Expected<std::vector<Artifact>> read_table_files(const std::string& list) {
+  return read_list(list,
+                   [](const std::filesystem::path& path) { return storage::read_file(path); });
+}
+
+Expected<std::vector<Artifact>> read_table_files(const std::string& list,
+                                                 const std::filesystem::path& base) {
+  return read_list(list, [&](const std::filesystem::path& path) -> Expected<std::string> {
+    NONIO_TRY(const auto inside, storage::path_inside(base, path.string()));
+    auto bytes = storage::read_small_file(inside);
+    if (!bytes) return fail(path.string() + ": " + bytes.error().message);
+    return bytes;
+  });
+}
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> secret_files(const SiteFile& file, const fs::path& site) {
+  std::vector<fs::path> files{site / users_name};
+  const char* folder = std::getenv("CREDENTIALS_DIRECTORY");
+  const auto add = [&](const std::string& path, const std::string& credential) {
+    if (!path.empty()) files.push_back(site / path);
+    if (!credential.empty() && folder != nullptr) files.push_back(fs::path(folder) / credential);
+  };
+  if (file.signing) {
+    add(file.signing->pkcs12, {});
+    add(file.signing->password_file, file.signing->password_credential);
+  }
+  if (file.database) add(file.database->password_file, {});
+  if (file.mail) add(file.mail->password_file, file.mail->password_credential);
+  if (file.webhook) add(file.webhook->secret_file, {});
+  return files;
+}
+
+Expected<void> check_secret(const fs::path& path, const std::string& what) {
+  constexpr mode_t others = S_IRWXG | S_IRWXO;
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0 || (info.st_mode & others) == 0) return {};
+  std::array<char, 8> mode{};
+  std::snprintf(mode.data(), mode.size(), "%04o", info.st_mode & 07777U);
+  return fail("other users can get at " + what + " " + path.string() + " (mode " + mode.data() +
+              "); expected a file for the user alone who runs this: chmod 600 " + path.string() +
+              (info.st_uid == ::geteuid()
+                   ? ""
+                   : ", and chown " + std::to_string(::geteuid()) + " " + path.string()));
+}
+
+Expected<std::string> read_password(const PasswordSource& source, const fs::path& site) {
+  const std::string in = " in [" + source.section + "] of site.toml";
+  if (!source.env.empty()) {
+    const char* value = std::getenv(source.env.c_str());
+    if (value == nullptr)
+      return fail("the environment has no " + source.env + " (password_env" + in + ")");
+    return std::string(value);
+  }
+  fs::path path = site / source.file;
+  if (!source.credential.empty()) {
+    const char* folder = std::getenv("CREDENTIALS_DIRECTORY");
+    if (folder == nullptr)
+      return fail("systemd gave no credentials (password_credential" + in +
+                  "; LoadCredential= in the unit)");
+    path = fs::path(folder) / source.credential;
+  }
+  if (!source.file.empty())
+    if (auto alone = check_secret(path, source.what); !alone) return fail(alone.error());
+  auto text = storage::read_file(path);
+  if (!text) return fail(source.what + ": " + text.error().message);
+  while (text->ends_with('\n') || text->ends_with('\r')) text->pop_back();
+  return text;
 }
 
 }  // namespace nonio::config

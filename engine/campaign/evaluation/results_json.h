@@ -6,6 +6,8 @@
 
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/evaluation/record.h"
+#include "nonio/sdk/json_writer.h"
+#include "platform/storage/json_values.h"
 
 namespace nonio::evaluation {
 
@@ -16,5 +18,8 @@ std::string results_json(const Evaluated& evaluated, const reading::Context& con
 std::string results_json(const Evaluated& evaluated, const reading::Context& context);
 
 const char* to_text(Decision decision);
+
+void put_certificate(JsonWriter& json, const Certificate& certificate);
+Certificate certificate_of(const storage::Json& json);
 
 }  // namespace nonio::evaluation

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "nonio/sdk/error.h"
 #include "nonio/sdk/plugin.h"
 
 namespace nonio::loader {
@@ -91,5 +92,11 @@ class Plugins final : public Registry {
   std::vector<Output> outputs_;
   std::vector<Controller> controllers_;
 };
+
+/// Returns an error unless the library is a plugin for this program. The library is never unloaded.
+Expected<const PluginEntry*> open_entry(const std::filesystem::path& path);
+
+/// Omits weak symbols, because compilers add copies of templates of the standard library.
+Expected<std::vector<std::string>> exported_symbols(const std::filesystem::path& library);
 
 }  // namespace nonio::loader

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/modelling/after_table.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "nonio/math/iso230_2.h"

@@ -2,7 +2,6 @@
 #include "campaign/modelling/campaign_model.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "campaign/modelling/held_terms.h"

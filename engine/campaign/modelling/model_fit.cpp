@@ -8,6 +8,7 @@
 #include <set>
 
 #include "campaign/modelling/model_verdict.h"
+#include "campaign/modelling/model_words.h"
 #include "campaign/modelling/thermal_tests.h"
 #include "campaign/reading/names.h"
 #include "nonio/sdk/channels.h"
@@ -348,10 +349,9 @@ std::vector<ModelFit::Without> without_each(const PartModel& part) {
 
 Expected<ModelFits> model_fit(const reading::ReadCampaign& read, const reading::Context& context) {
   const Campaign& campaign = read.manifest->campaign;
-  const auto parts = part_models(read, campaign.model);
-  if (!parts) return fail(parts.error());
+  NONIO_TRY(const auto parts, part_models(read, campaign.model));
   ModelFits out;
-  for (const PartModel& part : *parts) {
+  for (const PartModel& part : parts) {
     Results::Analysed one{reading::model_fit_name,
                           context.version,
                           part.part.measurements.front(),
@@ -379,12 +379,11 @@ Expected<ModelFits> model_fit(const reading::ReadCampaign& read, const reading::
 Expected<std::vector<Observations>> compensable_readings(const reading::ReadCampaign& read,
                                                          std::vector<Remark>& notes) {
   const Campaign& campaign = read.manifest->campaign;
-  auto parts = part_models(read, campaign.model);
-  if (!parts) return fail(parts.error());
+  NONIO_TRY(auto parts, part_models(read, campaign.model));
   std::vector<Observations> out = read.observations;
   // A measurement that belongs to two states of the machine is in two parts.
   std::set<std::size_t> done;
-  for (const PartModel& part : *parts) {
+  for (const PartModel& part : parts) {
     const auto compared = compare_part(part);
     if (!compared)
       return fail(Error{"model.compensate: " + compared.error().message +

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "campaign/modelling/after_table.h"
 #include "campaign/modelling/held_terms.h"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "campaign/modelling/model_verdict.h"
 #include "campaign/modelling/thermal_tests.h"

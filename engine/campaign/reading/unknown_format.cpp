@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <iterator>
 
+#include "platform/process/guarded.h"
+
 namespace nonio::reading {
+
 namespace {
 
 constexpr std::string_view wanted =
@@ -86,6 +89,18 @@ std::string what_is_wrong(std::string_view bytes, std::string_view file) {
     if (line.find_first_of(",;\t") == line.npos && line.find(c) != line.npos)
       return found + name + std::string(" between the names: ") + quoted(line);
   return found + "no column that is known: " + quoted(line);
+}
+
+std::optional<StatedTable> stated_table(const loader::Plugins& plugins, std::string_view bytes,
+                                        std::size_t most) {
+  for (const Reader& r : plugins.readers()) {
+    if (r.first_rows == nullptr) continue;
+    auto rows =
+        process::guarded("reader " + r.info.name, [&] { return r.first_rows(bytes, most); });
+    if (rows && !rows->empty() && rows->front().size() > 1)
+      return StatedTable{&r, std::move(*rows)};
+  }
+  return std::nullopt;
 }
 
 }  // namespace nonio::reading

@@ -264,8 +264,7 @@ void state_by_answer(reading::ReadCampaign& read, const std::string& name,
 Expected<void> state_by_backup(reading::ReadCampaign& read, const Controller& controller,
                                const std::vector<Artifact>& backup, Settings& options,
                                std::vector<Finding>& findings) {
-  const auto in_backup = tables_in(controller, backup, read.manifest->campaign, options);
-  if (!in_backup) return fail(in_backup.error());
+  NONIO_TRY(const auto in_backup, tables_in(controller, backup, read.manifest->campaign, options));
   for (Axis& axis : read.manifest->campaign.machine.axes) {
     const auto& measurements = read.manifest->campaign.measurements;
     const bool is_open =
@@ -273,7 +272,7 @@ Expected<void> state_by_backup(reading::ReadCampaign& read, const Controller& co
           return m.kind == "axis" && m.compensation != "off" &&
                  control_axis(read.manifest->campaign.machine, m) == axis.name;
         });
-    if (axis.active_table || !is_open || own_tables(*in_backup, axis.name).empty()) continue;
+    if (axis.active_table || !is_open || own_tables(in_backup, axis.name).empty()) continue;
     const auto with = measured_with(read, controller, backup, axis.name, options, findings);
     if (!with) return fail(with.error());
     axis.active_table = with->files;

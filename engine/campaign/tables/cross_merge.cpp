@@ -295,36 +295,32 @@ Expected<MergedSet> merge_set(const reading::ReadCampaign& read, const Results& 
         "with `nonio run`, or use squareness = \"table\"");
   MergedSet out;
   Settings options = given;
-  const auto stated = with_state(read, controller, backup, set, options, out);
-  if (!stated) return fail(stated.error());
-  const auto on = active_compensation(*stated, controller, options);
-  if (!on) return fail(on.error());
-  if (*on) options = (*on)->options;
-  const Campaign& campaign = stated->manifest->campaign;
-  const Results curves = *on ? without_tables(campaign, results, (*on)->tables) : results;
+  NONIO_TRY(const auto stated, with_state(read, controller, backup, set, options, out));
+  NONIO_TRY(const auto on, active_compensation(stated, controller, options));
+  if (on) options = on->options;
+  const Campaign& campaign = stated.manifest->campaign;
+  const Results curves = on ? without_tables(campaign, results, on->tables) : results;
   auto written = process::guarded("controller " + name, [&] {
-    return controller.write({campaign, *on ? (*on)->readings : read.observations, curves, options});
+    return controller.write({campaign, on ? on->readings : read.observations, curves, options});
   });
   if (!written) return fail(written.error());
   out.findings.insert(out.findings.end(), written->findings.begin(), written->findings.end());
-  const auto groups = groups_of(controller, campaign, options, written->artifacts, set);
-  if (!groups) return fail(groups.error());
+  NONIO_TRY(const auto groups, groups_of(controller, campaign, options, written->artifacts, set));
   std::vector<Artifact> files;
-  for (const Group& g : *groups) files.insert(files.end(), g.files.begin(), g.files.end());
+  for (const Group& g : groups) files.insert(files.end(), g.files.begin(), g.files.end());
   const auto fresh = tables_in(controller, files, campaign, options);
   if (!files.empty() && !fresh) return fail(fresh.error());
   if (files.empty() || std::none_of(fresh->begin(), fresh->end(), is_cross)) return out;
-  auto whole = merged(controller, campaign, options, backup, *groups, out.files);
-  if (!whole) return fail(whole.error());
+  NONIO_TRY(auto whole, merged(controller, campaign, options, backup, groups, out.files));
   const auto present = tables_in(controller, backup, campaign, options),
-             next = tables_in(controller, *whole, campaign, options);
+             next = tables_in(controller, whole, campaign, options);
   for (const auto* tables : {&present, &next})
     if (!*tables) return fail((*tables).error());
   if (auto ok = only_this_set(*present, *fresh, *next, set); !ok) return fail(ok.error());
-  out.whole = std::move(*whole);
+  out.whole = std::move(whole);
   out.next = *next;
   out.differences = differences(*present, *next);
-  predict(out, *stated, *on, options, set);
+  predict(out, stated, on, options, set);
   return out;
 }
 

@@ -522,21 +522,18 @@ Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controlle
       return controller.write({c, o, none, options});
     });
   };
-  auto whole = write(campaign, raw);
-  if (!whole) return tl::unexpected<Error>(whole.error());
-  RenewedTables out{std::move(whole->artifacts), {}, {}, std::move(whole->findings)};
+  NONIO_TRY(auto whole, write(campaign, raw));
+  RenewedTables out{std::move(whole.artifacts), {}, {}, std::move(whole.findings)};
   for (std::size_t i = 0; i < raw.size(); ++i) {
     const Measurement& m = campaign.measurements[i];
     if (m.kind != "axis" || raw[i].size() == 0) continue;
     const Campaign one = with_one(campaign, m);
-    const auto files = write(one, {raw[i]});
-    if (!files) return tl::unexpected<Error>(files.error());
-    if (files->artifacts.empty()) continue;
-    const auto tables = tables_in(controller, files->artifacts, one, options);
-    if (!tables) return tl::unexpected<Error>(tables.error());
+    NONIO_TRY(const auto files, write(one, {raw[i]}));
+    if (files.artifacts.empty()) continue;
+    NONIO_TRY(const auto tables, tables_in(controller, files.artifacts, one, options));
     out.forecast.push_back(forecast_of_axis(campaign, m, control_axis(campaign.machine, m),
-                                            read.observations[i], raw[i], *tables, options));
-    out.tables.insert(out.tables.end(), tables->begin(), tables->end());
+                                            read.observations[i], raw[i], tables, options));
+    out.tables.insert(out.tables.end(), tables.begin(), tables.end());
   }
   return out;
 }

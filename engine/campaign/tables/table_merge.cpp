@@ -118,20 +118,18 @@ Expected<void> not_outdated(const reading::ReadCampaign& read, const Controller&
 
 Expected<CampaignTables> tables_of_campaign(const reading::ReadCampaign& read,
                                             const Controller& controller, const Settings& given) {
-  const auto on = active_compensation(read, controller, given);
-  if (!on) return fail(on.error());
-  const Settings& options = *on ? (*on)->options : given;
+  NONIO_TRY(const auto on, active_compensation(read, controller, given));
+  const Settings& options = on ? on->options : given;
   const Campaign& campaign = read.manifest->campaign;
   const Results none;
   auto written = process::guarded("controller " + controller.info.name, [&] {
-    return controller.write({campaign, *on ? (*on)->readings : read.observations, none, options});
+    return controller.write({campaign, on ? on->readings : read.observations, none, options});
   });
   if (!written) return fail(written.error());
   CampaignTables out{std::move(written->artifacts), {}, std::move(written->findings)};
   if (out.files.empty()) return out;
-  auto tables = tables_in(controller, out.files, campaign, options);
-  if (!tables) return fail(tables.error());
-  out.tables = std::move(*tables);
+  NONIO_TRY(auto tables, tables_in(controller, out.files, campaign, options));
+  out.tables = std::move(tables);
   return out;
 }
 
@@ -139,23 +137,21 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
                                     const Settings& given, const std::vector<Artifact>& backup,
                                     const std::string& axis) {
   const std::string who = "controller " + controller.info.name;
-  auto one = one_axis(read, axis);
-  if (!one) return fail(one.error());
+  NONIO_TRY(auto one, one_axis(read, axis));
   Settings options = given;
   std::vector<Finding> findings;
-  const auto with = measured_with(read, controller, backup, axis, options, findings);
-  if (!with) return fail(with.error());
-  take_active(*one, *with, axis, options);
+  NONIO_TRY(const auto with, measured_with(read, controller, backup, axis, options, findings));
+  take_active(one, with, axis, options);
   const Results none;
   auto written = process::guarded(who, [&] {
-    return controller.write({one->campaign, one->readings, none, options});
+    return controller.write({one.campaign, one.readings, none, options});
   });
   if (!written) return fail(written.error());
   MergedTables out{.files = {},
                    .whole = {},
                    .differences = {},
                    .forecast = {},
-                   .with = *with,
+                   .with = with,
                    .next = {},
                    .findings = written->findings,
                    .notes = written->notes};
@@ -193,8 +189,8 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
   out.whole = std::move(whole);
   out.differences = differences(*present, *next);
   out.next = own_tables(*next, axis);
-  out.forecast.push_back(forecast_of_axis(one->campaign, one->campaign.measurements.front(), axis,
-                                          one->measured.front(), one->readings.front(), *next,
+  out.forecast.push_back(forecast_of_axis(one.campaign, one.campaign.measurements.front(), axis,
+                                          one.measured.front(), one.readings.front(), *next,
                                           options));
   return out;
 }

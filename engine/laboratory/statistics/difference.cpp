@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "laboratory/statistics/difference.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 

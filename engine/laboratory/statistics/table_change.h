@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 /// Recognizes a loaded compensation table in the change between two campaigns of an axis. Positions

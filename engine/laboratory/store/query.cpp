@@ -105,14 +105,11 @@ constexpr const char* stated_machines =
 }  // namespace
 
 Expected<std::vector<Point>> query(const fs::path& out, const Query& wanted) {
-  auto opened = open_store(out);
-  if (!opened) return fail(opened.error());
-  Database& database = *opened;
+  NONIO_TRY(auto database, open_store(out));
   std::string machine;
   if (!wanted.machine.empty()) {
-    auto known = known_machine(database, wanted.machine, wanted.superseded);
-    if (!known) return fail(known.error());
-    machine = std::move(*known);
+    NONIO_TRY(auto known, known_machine(database, wanted.machine, wanted.superseded));
+    machine = std::move(known);
   }
   if (auto well = check_name(database, "axis", "SELECT DISTINCT axis FROM result ORDER BY axis",
                              wanted.axis);
@@ -134,31 +131,27 @@ Expected<std::vector<Point>> query(const fs::path& out, const Query& wanted) {
 }
 
 Expected<std::string> machine_named(const fs::path& out, const std::string& name) {
-  auto opened = open_store(out);
-  if (!opened) return fail(opened.error());
-  return known_machine(*opened, name, false);
+  NONIO_TRY(auto opened, open_store(out));
+  return known_machine(opened, name, false);
 }
 
 Expected<std::vector<NamedMachine>> machines_in(const fs::path& out) {
-  auto opened = open_store(out);
-  if (!opened) return fail(opened.error());
-  return machines_of(*opened, joined_machines);
+  NONIO_TRY(auto opened, open_store(out));
+  return machines_of(opened, joined_machines);
 }
 
 Expected<std::vector<Spelling>> spellings_in(const fs::path& out) {
-  auto opened = open_store(out);
-  if (!opened) return fail(opened.error());
-  const auto machines = machines_of(*opened, stated_machines);
-  if (!machines) return fail(machines.error());
+  NONIO_TRY(auto opened, open_store(out));
+  NONIO_TRY(const auto machines, machines_of(opened, stated_machines));
   std::map<std::string, std::string> aliases;
-  for (Database::Row& row : opened->rows("SELECT alias, machine FROM machine_alias"))
+  for (Database::Row& row : opened.rows("SELECT alias, machine FROM machine_alias"))
     aliases[row[0]] = row[1];
-  if (auto well = opened->take_error(); !well) return fail(well.error());
+  if (auto well = opened.take_error(); !well) return fail(well.error());
   const auto joined = [&](const std::string& name) {
     const auto found = aliases.find(name);
     return found == aliases.end() ? name : found->second;
   };
-  auto found = spellings(*machines);
+  auto found = spellings(machines);
   std::erase_if(found, [&](const Spelling& s) { return joined(s.one) == joined(s.other); });
   return found;
 }

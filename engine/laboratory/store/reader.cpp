@@ -169,9 +169,8 @@ void read_findings(Database& database, std::size_t campaign, std::int64_t evalua
 }  // namespace
 
 Expected<StoreReader> StoreReader::open(const fs::path& out) {
-  auto database = open_store(out);
-  if (!database) return fail(database.error());
-  return StoreReader(std::move(*database));
+  NONIO_TRY(auto database, open_store(out));
+  return StoreReader(std::move(database));
 }
 
 Expected<std::vector<MachineState>> StoreReader::machines() {

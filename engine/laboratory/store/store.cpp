@@ -357,20 +357,18 @@ Expected<void> leave_to_server(const fs::path& out, std::int64_t evaluations) {
 
 Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::string>& campaigns,
                         const SiteRecords& records, const std::function<void()>& alive) {
-  const auto place = place_of(out);
-  if (!place) return fail(place.error());
-  NONIO_TRY(auto opened, open_or_replace(out, *place));
-  Database& database = opened;
+  NONIO_TRY(const auto place, place_of(out));
+  NONIO_TRY(auto database, open_or_replace(out, place));
   Updated updated;
   Database::Transaction transaction(database);
   const auto version = version_of(database);
   if (database.failed()) return fail(database.take_error().error());
-  if (auto fit = check_version(version, name_of(*place, out)); !fit) return fail(fit.error());
-  if (place->server)
+  if (auto fit = check_version(version, name_of(place, out)); !fit) return fail(fit.error());
+  if (place.server)
     if (auto ours = take_schema(database, out); !ours) return fail(ours.error());
   bool again = all || version != schema_version;
   // A server that was restored from a backup or replaced by its standby may lack the last runs.
-  if (!again && place->server) again = last_number(database) != place->evaluations;
+  if (!again && place.server) again = last_number(database) != place.evaluations;
   Filling filling(out, database, alive, updated);
   if (!again) {
     NONIO_TRY(const auto added, filling.some(campaigns));
@@ -384,7 +382,7 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
   replace_logs(database, records.logs, records.aliases, records.of_records, records.due);
   const std::int64_t last = last_number(database);
   if (auto ended = transaction.end(); !ended) return fail(ended.error());
-  if (place->server)
+  if (place.server)
     if (auto noted = leave_to_server(out, last); !noted) return fail(noted.error());
   return updated;
 }

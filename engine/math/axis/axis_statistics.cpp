@@ -2,7 +2,6 @@
 #include "nonio/math/axis_statistics.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/constants.h"
 #include "nonio/math/statistics.h"

@@ -261,12 +261,11 @@ Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& 
                 ", after the last target " + plan.text(plan.to));
   std::vector<std::int64_t> knots;
   for (double x : position) knots.push_back(whole(x, rule.unit));
-  const auto step = rule.step != 0.0 ? wished_step(plan) : chosen_step(plan, knots);
-  if (!step) return tl::unexpected<Error>(step.error());
+  NONIO_TRY(const auto step, rule.step != 0.0 ? wished_step(plan) : chosen_step(plan, knots));
   Grid grid;
-  grid.step = static_cast<double>(*step) * rule.unit;
-  grid.first = static_cast<double>(plan.origin + plan.low(*step) * *step) * rule.unit;
-  grid.points = static_cast<std::size_t>(plan.points(*step));
+  grid.step = static_cast<double>(step) * rule.unit;
+  grid.first = static_cast<double>(plan.origin + plan.low(step) * step) * rule.unit;
+  grid.points = static_cast<std::size_t>(plan.points(step));
   return grid;
 }
 

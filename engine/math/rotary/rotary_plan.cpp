@@ -113,10 +113,9 @@ Expected<RotaryPlanU> simulated(const RotaryPlan& plan, std::size_t trials, std:
 Expected<std::size_t> cheapest(RotaryPlan plan, double U_centre, double U_direction,
                                std::size_t most) {
   for (plan.balls = 3; plan.balls <= most; ++plan.balls) {
-    const auto u = expected_of(plan);
-    if (!u) return fail(u.error());
-    const bool centre = U_centre == 0.0 || 2.0 * u->across <= U_centre * (1.0 + 1e-9),
-               direction = U_direction == 0.0 || 2.0 * u->tilt <= U_direction * (1.0 + 1e-9);
+    NONIO_TRY(const auto u, expected_of(plan));
+    const bool centre = U_centre == 0.0 || 2.0 * u.across <= U_centre * (1.0 + 1e-9),
+               direction = U_direction == 0.0 || 2.0 * u.tilt <= U_direction * (1.0 + 1e-9);
     if (centre && direction) return plan.balls;
   }
   return fail("expected an uncertainty that up to " + std::to_string(most) +

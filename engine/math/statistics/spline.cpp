@@ -77,14 +77,13 @@ Expected<std::vector<std::vector<double>>> smooth_basis(const std::vector<double
   if (!(length > 0.0) || !std::isfinite(length))
     return fail("a smooth curve needs targets at different positions");
   const Knots grid{targets.front(), length / (knots - 1), knots - 1};
-  const auto c = coefficients(b_spline_matrix(grid, targets), targets);
-  if (!c) return fail(c.error());
+  NONIO_TRY(const auto c, coefficients(b_spline_matrix(grid, targets), targets));
   std::vector<std::vector<double>> out(static_cast<std::size_t>(knots),
                                        std::vector<double>(x.size()));
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto [interval, values] = b_splines(grid, x[i]);
     const Eigen::RowVectorXd row =
-        Eigen::Map<const Eigen::RowVector4d>(values.data()) * c->middleRows(interval, 4);
+        Eigen::Map<const Eigen::RowVector4d>(values.data()) * c.middleRows(interval, 4);
     for (int k = 0; k < knots; ++k) out[static_cast<std::size_t>(k)][i] = row(k);
   }
   return out;

@@ -5,7 +5,6 @@
 #include "nonio/math/budget.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <tuple>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/math/volume_map.h"
 
-#include <algorithm>
-
 namespace nonio::math {
 
 std::vector<Corner> lattice(const Corner& low, const Corner& high, std::size_t parts) {

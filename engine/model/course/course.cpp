@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "course_data.h"
 #include "nonio/math/distributions.h"
@@ -159,9 +158,8 @@ Comparison comparison_of_course(const Part& part, Fit fit) {
 }
 
 Expected<Comparison> compare_course(const Part& part, const std::vector<Term>& model) {
-  auto fitted = fit_course(part, model);
-  if (!fitted) return fail(fitted.error());
-  return comparison_of_course(part, std::move(*fitted));
+  NONIO_TRY(auto fitted, fit_course(part, model));
+  return comparison_of_course(part, std::move(fitted));
 }
 
 }  // namespace nonio::model

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "course_data.h"
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 
 namespace nonio::model {

@@ -300,9 +300,8 @@ class CourseExplanation {
 Expected<Explanation> explain_course(const Part& part, const std::vector<Term>& model,
                                      const std::vector<Term>& catalogue, std::uint64_t seed) {
   const CourseData data(part);
-  auto fit = fit_course(data, model);
-  if (!fit) return fail(fit.error());
-  Comparison comparison = comparison_of_course(part, std::move(*fit));
+  NONIO_TRY(auto fit, fit_course(data, model));
+  Comparison comparison = comparison_of_course(part, std::move(fit));
   return CourseExplanation(data, model, catalogue, seed, std::move(comparison)).made();
 }
 

@@ -227,10 +227,10 @@ class CourseFit {
     out.residual = part.table.deviation;
     Index at = 0;
     for (std::size_t k = 0; k < terms_.size(); ++k) {
-      const auto columns = terms_[k].effect->columns(part.table, terms_[k].axis, terms_[k].shape);
-      if (!columns) return fail(columns.error());
+      NONIO_TRY(const auto columns,
+                terms_[k].effect->columns(part.table, terms_[k].axis, terms_[k].shape));
       std::vector<double> says(n, 0.0);
-      for (const auto& column : *columns) {
+      for (const auto& column : columns) {
         for (std::size_t i = 0; i < n; ++i) says[i] += x(at) * column[i];
         ++at;
       }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "course.h"
@@ -31,11 +30,10 @@ Expected<Linearised> columns_in(const Part& part, const Fit& fit) {
   Linearised out{MatrixXd(n, 0), MatrixXd(n, 0)};
   auto parameter = fit.parameters.begin();
   for (const Term& term : fit.terms) {
-    const auto columns = term.effect->columns(part.table, term.axis, term.shape);
-    if (!columns) return fail(columns.error());
+    NONIO_TRY(const auto columns, term.effect->columns(part.table, term.axis, term.shape));
     VectorXd predicted = VectorXd::Zero(n);
     std::vector<double> coefficients;
-    for (const auto& column : *columns) {
+    for (const auto& column : columns) {
       const VectorXd one = Eigen::Map<const VectorXd>(column.data(), n);
       append(out.columns, one);
       coefficients.push_back(parameter->value);
@@ -46,11 +44,10 @@ Expected<Linearised> columns_in(const Part& part, const Fit& fit) {
       // A secant over the uncertainty, as a time constant cannot be negative.
       std::vector<double> shape = term.shape;
       shape[s] += parameter->u;
-      const auto other = term.effect->columns(part.table, term.axis, shape);
-      if (!other) return fail(other.error());
+      NONIO_TRY(const auto other, term.effect->columns(part.table, term.axis, shape));
       VectorXd change = -predicted;
-      for (std::size_t k = 0; k < other->size(); ++k)
-        change += coefficients[k] * Eigen::Map<const VectorXd>((*other)[k].data(), n);
+      for (std::size_t k = 0; k < other.size(); ++k)
+        change += coefficients[k] * Eigen::Map<const VectorXd>(other[k].data(), n);
       append(out.of_shapes, change / parameter->u);
     }
   }
@@ -138,9 +135,8 @@ bool leaves_range(const Part& seen, const Part& unseen) {
 /// Errors, and u from the scatter and the parameters, of readings that were not used.
 Expected<Prediction> applied(const Part& seen, const std::vector<Term>& model, const Part& unseen,
                              bool zero_kept) {
-  const auto fit = fit_course(seen, model);
-  if (!fit) return fail(fit.error());
-  const auto known = columns_in(seen, *fit), other = columns_in(unseen, *fit);
+  NONIO_TRY(const auto fit, fit_course(seen, model));
+  const auto known = columns_in(seen, fit), other = columns_in(unseen, fit);
   if (!known) return fail(known.error());
   if (!other) return fail(other.error());
   const CourseData data(seen);
@@ -151,14 +147,14 @@ Expected<Prediction> applied(const Part& seen, const std::vector<Term>& model, c
     return out;
   };
   CourseModel columns{means(known->columns)};
-  for (const Parameter& p : fit->parameters)
+  for (const Parameter& p : fit.parameters)
     if (!p.shape) columns.of.push_back(p.quantity);
   columns.add(means(known->of_shapes), {Quantity::time});
   const CourseUncertainty unknown = uncertainty_of(data, columns);
   Prediction out;
   VectorXd x(known->columns.cols());
   Index at = 0;
-  for (const Parameter& p : fit->parameters)
+  for (const Parameter& p : fit.parameters)
     if (!p.shape) x(at++) = p.value;
   VectorXd error = Eigen::Map<const VectorXd>(unseen.table.deviation.data(),
                                               static_cast<Index>(unseen.table.size()));
@@ -171,10 +167,10 @@ Expected<Prediction> applied(const Part& seen, const std::vector<Term>& model, c
   from << other->columns, other->of_shapes;
   std::optional<std::pair<double, Eigen::RowVectorXd>> kept;
   if (zero_kept)
-    kept.emplace(fit->zero.back(),
+    kept.emplace(fit.zero.back(),
                  columns.columns.bottomRows(data.size() - data.lines().back()).colwise().mean());
   const std::vector<double> share = with_zeros(unseen, error, from, kept, unknown.correlation_time);
-  const auto floor = floor_of(fit->residual);
+  const auto floor = floor_of(fit.residual);
   // Of one reading, which is more than that of a mean of several.
   const double correlated = unknown.correlated * unknown.correlated,
                scatter =

@@ -10,7 +10,6 @@
 #include <numeric>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "design.h"
 #include "nonio/sdk/observations.h"

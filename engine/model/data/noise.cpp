@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "noise.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "nonio/math/distributions.h"

@@ -9,7 +9,6 @@
 #include <span>
 #include <unordered_map>
 
-#include "design.h"
 #include "noise.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"

@@ -5,9 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "course/course.h"
 #include "data/thin.h"
@@ -297,25 +294,24 @@ void plan_for_replaceable(const Finding& f, Explanation& out) {
 Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& model,
                                   const std::vector<Term>& catalogue, std::uint64_t seed,
                                   const Ground& ground) {
-  auto finding = find_best(part, model, catalogue, seed);
-  if (!finding) return fail(finding.error());
+  NONIO_TRY(auto finding, find_best(part, model, catalogue, seed));
   Explanation out;
-  out.candidates = candidates_of(*finding, ground);
+  out.candidates = candidates_of(finding, ground);
   for (const Candidate& c : out.candidates)
-    if (c.visible && finding->bench->holds(finding->best, finding->index_of(c.term.name())))
+    if (c.visible && finding.bench->holds(finding.best, finding.index_of(c.term.name())))
       out.together.push_back(c.term.name());
-  out.best_rms = finding->of_best.fit.rms;
-  const double rms = rms_with(finding->part.table, finding->of_model.fit.terms, ground.weight);
-  judge(*finding, std::isfinite(rms) ? rms : finding->of_model.fit.rms, out);
+  out.best_rms = finding.of_best.fit.rms;
+  const double rms = rms_with(finding.part.table, finding.of_model.fit.terms, ground.weight);
+  judge(finding, std::isfinite(rms) ? rms : finding.of_model.fit.rms, out);
   if (out.verdict.kind == Verdict::Kind::nothing) {
-    out.replaceable = replaceable_in(*finding, ground);
-    plan_for_replaceable(*finding, out);
+    out.replaceable = replaceable_in(finding, ground);
+    plan_for_replaceable(finding, out);
   }
   if (out.verdict.kind == Verdict::Kind::unknown) {
-    describe(*finding, catalogue, out);
-    out.statements = statements_of(*finding);
+    describe(finding, catalogue, out);
+    out.statements = statements_of(finding);
   }
-  out.comparison.suspects = std::move(finding->suspects);
+  out.comparison.suspects = std::move(finding.suspects);
   return out;
 }
 

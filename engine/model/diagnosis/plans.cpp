@@ -6,11 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 #include <tuple>
 #include <type_traits>
 
-#include "data/design.h"
 #include "fit/workbench.h"
 #include "nonio/sdk/axis_readings.h"
 

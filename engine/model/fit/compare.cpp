@@ -9,9 +9,7 @@
 #include "course/course.h"
 #include "data/noise.h"
 #include "data/thin.h"
-#include "data/whitening.h"
 #include "nonio/math/distributions.h"
-#include "places.h"
 
 namespace nonio::model {
 

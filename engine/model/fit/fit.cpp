@@ -516,22 +516,21 @@ Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
   if (used <= design.a.cols())
     return fail(std::to_string(used) + " readings cannot determine " +
                 std::to_string(design.a.cols()) + " unknowns");
-  const auto s = solve(design, white(y));
-  if (!s) return fail(s.error());
+  NONIO_TRY(const auto s, solve(design, white(y)));
 
   Fit out;
   out.terms = std::move(terms);
   out.weight = weight.empty() ? std::vector<double>(o.size(), 1.0) : std::move(weight);
   out.redundancy = static_cast<std::size_t>(used - design.a.cols());
   const Index lines = design.first.front();
-  out.zero.assign(s->x.data(), s->x.data() + lines);
+  out.zero.assign(s.x.data(), s.x.data() + lines);
   // A reading of weight 0 also has a residual: its distance from the model.
   VectorXd residual = y;
   for (Index i = 0; i < y.size(); ++i)
-    residual(i) -= s->x(static_cast<Index>(line_of(o, static_cast<std::size_t>(i))));
+    residual(i) -= s.x(static_cast<Index>(line_of(o, static_cast<std::size_t>(i))));
   for (std::size_t t = 0; t < out.terms.size(); ++t) {
     const MatrixXd& block = design.blocks[t];
-    const VectorXd part = block * s->x.segment(design.first[t], block.cols());
+    const VectorXd part = block * s.x.segment(design.first[t], block.cols());
     residual -= part;
     out.part.emplace_back(part.data(), part.data() + part.size());
   }
@@ -541,16 +540,16 @@ Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
   for (const Index lost : design.lost) out.lost.push_back(static_cast<std::size_t>(lost));
   Index column = lines;
   for (Parameter& p : out.parameters)
-    if (!p.shape) p.value = s->x(column++);
-  fill_covariance(out, o, std::move(design), *s, searched, white);
+    if (!p.shape) p.value = s.x(column++);
+  fill_covariance(out, o, std::move(design), s, searched, white);
   double sum = 0.0;
   for (const double w : out.weight) sum += w;
   // Use residuals of the original readings, not of the whitened ones.
   const double squares = white.independent() && noise.rough.empty()
-                             ? s->squares
+                             ? s.squares
                              : root_weights(o, out.weight).cwiseProduct(residual).squaredNorm();
   out.rms = std::sqrt(squares / sum);
-  out.s = out.redundancy > 0 ? std::sqrt(s->squares / static_cast<double>(out.redundancy)) : 0.0;
+  out.s = out.redundancy > 0 ? std::sqrt(s.squares / static_cast<double>(out.redundancy)) : 0.0;
   return out;
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "data/design.h"
-#include "nonio/model/comparison.h"
 
 namespace nonio::model {
 

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "data/pass_zeros.h"
-#include "fit/compare.h"
 #include "fit/weights.h"
 #include "nonio/math/distributions.h"
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "data/noise.h"
 #include "data/pass_zeros.h"
 #include "fit/compare.h"
 #include "fit/weights.h"

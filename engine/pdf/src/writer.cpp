@@ -8,14 +8,11 @@
 #include <hpdf_pages.h>
 #include <hpdf_streams.h>
 
-#include <array>
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
-#include <optional>
-#include <string>
 #include <string_view>
 
 #include "nonio/pdf/bytes.h"

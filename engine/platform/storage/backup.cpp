@@ -19,7 +19,6 @@
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 #include "platform/storage/pack.h"
-#include "platform/storage/scratch_folder.h"
 #include "platform/storage/tar.h"
 
 namespace nonio::storage {
@@ -147,10 +146,9 @@ class Backup {
     const fs::path copy = scratch.path() / "copy";
     if (scratch.path().empty()) return fail("no folder for temporary files could be made");
     if (auto done = copy_database(path, copy); !done) return done;
-    auto database = Database::open(copy, Database::Use::read);
-    if (!database) return fail(database.error());
-    const std::string sound = database->first("PRAGMA quick_check(1)");
-    if (auto well = database->take_error(); !well || sound != "ok")
+    NONIO_TRY(auto database, Database::open(copy, Database::Use::read));
+    const std::string sound = database.first("PRAGMA quick_check(1)");
+    if (auto well = database.take_error(); !well || sound != "ok")
       return fail(Error{"the database is damaged: " + (well ? sound : well.error().message),
                         path.string()});
     return add(path, copy);

@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <memory>
 #include <new>
-#include <string_view>
 
 #include "platform/storage/files.h"
 

@@ -8,15 +8,16 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <utility>
 
 #include "platform/storage/digest.h"
 #include "platform/storage/pack.h"
-#include "platform/storage/real_folder.h"
 
 namespace nonio::storage {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -132,12 +133,10 @@ Expected<ReadFile> ReadFile::open(const fs::path& path) {
     void* data = ::mmap(nullptr, room, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (data == MAP_FAILED) return system_error("cannot read", path);
     ReadFile read(static_cast<char*>(data), 0, room);
-    const auto size = read_into(file.get(), read.data_, room, path);
-    if (!size) return fail(size.error());
-    read.size_ = *size;
+    NONIO_TRY(read.size_, read_into(file.get(), read.data_, room, path));
     struct stat after {};
     if (::fstat(file.get(), &after) != 0) return system_error("cannot read", path);
-    if (same_state(before, after) && *size + 1 == room) return read;
+    if (same_state(before, after) && read.size_ + 1 == room) return read;
     ::usleep(100'000);
   }
   return fail(
@@ -416,12 +415,11 @@ Expected<void> fill_and_flush(const fs::path& folder, const std::vector<Artifact
 
 Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& files) {
   if (files.empty()) return {};
-  const auto is_new = make_folder(folder);
-  if (!is_new) return fail(is_new.error());
+  NONIO_TRY(const auto is_new, make_folder(folder));
   auto done = fill_and_flush(folder, files);
   // A journaling file system commits the new folder together with the files, so the parent folder
   // is flushed after them.
-  if (done && *is_new) done = flush_folder(fs::absolute(folder).parent_path());
+  if (done && is_new) done = flush_folder(fs::absolute(folder).parent_path());
   const std::vector<std::string> names = names_of(files);
   const auto is_ours = [&](const std::string& name) {
     const auto file =
@@ -493,6 +491,52 @@ void remove_temporaries(const fs::path& folder, const std::vector<std::string>& 
 
 void remove_leftovers(const fs::path& folder) {
   if (const auto names = temporaries(folder)) remove_temporaries(folder, *names);
+}
+
+namespace fs = std::filesystem;
+
+fs::path real_folder(const fs::path& folder, std::error_code& error) {
+  struct Known {
+    fs::path path, real;
+    struct stat at {};
+  };
+  thread_local Known parent;
+  const auto same = [](const struct stat& a, const struct stat& b) {
+    return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+  };
+  struct stat own {};
+  struct stat above {};
+  struct stat there {};
+  if (!folder.is_absolute() || !folder.has_filename() || folder.filename() == "." ||
+      folder.filename() == ".." || ::lstat(folder.c_str(), &own) != 0 || !S_ISDIR(own.st_mode))
+    return fs::canonical(folder, error);
+  const fs::path path = folder.parent_path();
+  if (::stat(path.c_str(), &above) != 0) return fs::canonical(folder, error);
+  if (path != parent.path || !same(above, parent.at) || ::lstat(parent.real.c_str(), &there) != 0 ||
+      !same(above, there)) {
+    parent = {};
+    fs::path real = fs::canonical(path, error);
+    if (error) return {};
+    parent = {path, std::move(real), above};
+  }
+  error.clear();
+  return parent.real / folder.filename();
+}
+
+namespace fs = std::filesystem;
+
+ScratchFolder::ScratchFolder(const std::string& purpose, const fs::path& below) {
+  std::error_code error;
+  std::string name =
+      ((below.empty() ? fs::temp_directory_path(error) : fs::absolute(below, error)) /
+       ("nonio-" + purpose + "-" + std::string(6, 'X')))
+          .string();
+  if (!error && ::mkdtemp(name.data()) != nullptr) path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
 }
 
 }  // namespace nonio::storage

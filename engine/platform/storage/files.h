@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "nonio/sdk/error.h"
@@ -127,5 +128,26 @@ void remove_temporaries(const std::filesystem::path& folder, const std::vector<s
 
 /// Removes the files that `temporaries` returns for a folder.
 void remove_leftovers(const std::filesystem::path& folder);
+
+/// Resolves links like `fs::canonical`, but reuses the result of the parent folder for its other
+/// subfolders while both paths still lead to the same folder.
+std::filesystem::path real_folder(const std::filesystem::path& folder, std::error_code& error);
+
+/// A temporary folder that only this user can read; it is removed at the end of the lifetime.
+class ScratchFolder {
+ public:
+  /// Creates "nonio-<purpose>-..." in `below`; if this is empty, in the system's temporary folder
+  /// (TMPDIR).
+  explicit ScratchFolder(const std::string& purpose, const std::filesystem::path& below = {});
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder();
+
+  /// Empty if the folder could not be created.
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
 
 }  // namespace nonio::storage

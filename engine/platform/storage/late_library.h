@@ -12,9 +12,8 @@ Expected<const void*> exported(const char* library, const char* symbol);
 
 template <class T>
 Expected<const T*> exported_as(const char* library, const char* symbol) {
-  const auto found = exported(library, symbol);
-  if (!found) return fail(found.error());
-  return static_cast<const T*>(*found);
+  NONIO_TRY(const auto found, exported(library, symbol));
+  return static_cast<const T*>(found);
 }
 
 }  // namespace nonio::storage

@@ -13,7 +13,6 @@
 
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
-#include "platform/storage/packed_results.h"
 
 namespace nonio::storage {
 namespace fs = std::filesystem;

@@ -6,7 +6,6 @@
 #include "platform/storage/characters.h"
 #include "platform/storage/files.h"
 #include "platform/storage/late_library.h"
-#include "platform/storage/scratch_folder.h"
 #include "platform/storage/xlsx_writer.h"
 
 namespace nonio::storage {

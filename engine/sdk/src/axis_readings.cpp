@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/sdk/axis_readings.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace nonio {
 
 namespace {

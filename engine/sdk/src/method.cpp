@@ -137,9 +137,8 @@ Expected<void> add_column(const Column& column, const std::vector<double>& value
           static_cast<std::int8_t>((values[i] > 0.0 ? 1 : 0) - (values[i] < 0.0 ? 1 : 0)));
   if (column.role == Role::run)
     for (const std::size_t i : rows) {
-      const auto run = run_number(column, values[i], readings.source_line[i]);
-      if (!run) return fail(run.error());
-      o.run.push_back(*run);
+      NONIO_TRY(const auto run, run_number(column, values[i], readings.source_line[i]));
+      o.run.push_back(run);
     }
   return {};
 }

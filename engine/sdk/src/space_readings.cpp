@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/sdk/space_readings.h"
 
-#include <algorithm>
-#include <limits>
-
 namespace nonio {
 
 SpaceReadings space_of(const Observations& o) {

@@ -3,12 +3,12 @@
 
 #include <openssl/err.h>
 #include <openssl/pkcs12.h>
+#include <openssl/x509v3.h>
 
 #include <fstream>
 #include <iterator>
 #include <utility>
 
-#include "certificate_use.h"
 #include "nonio/pdf/signature_field.h"
 #include "signed_data.h"
 
@@ -129,13 +129,13 @@ Expected<Signed> sign_pdf(const Key::Impl& key, std::string bytes, Time now,
   if (place->contents.find_first_not_of('0') != std::string_view::npos)
     return fail("is signed already");
   Signed out;
-  const auto cms = make_cms(key, place->before, place->after, now, stamping, out.no_time_stamp);
-  if (!cms) return fail(cms.error());
-  if (cms->size() > place->room())
-    return fail("the signature has " + std::to_string(cms->size()) +
+  NONIO_TRY(const auto cms,
+            make_cms(key, place->before, place->after, now, stamping, out.no_time_stamp));
+  if (cms.size() > place->room())
+    return fail("the signature has " + std::to_string(cms.size()) +
                 " bytes and does not fit into " + std::to_string(place->room()));
   if (bytes.size() > pdf::max_file) return fail(too_large);
-  bytes.replace(place->gap + 1, 2 * cms->size(), hex(*cms));
+  bytes.replace(place->gap + 1, 2 * cms.size(), hex(cms));
   out.bytes = std::move(bytes);
   return out;
 }
@@ -146,6 +146,29 @@ Expected<Signed> Key::sign(std::string bytes, Time now, const TimeStamping& stam
   if (bytes.starts_with("%PDF-")) return sign_pdf(*impl_, std::move(bytes), now, stamping);
   if (!bytes.starts_with("<?xml")) return fail("is neither a PDF nor an XML document");
   return sign_xml(*impl_, bytes, now, stamping);
+}
+
+Expected<void> check_signer_use(X509* certificate) {
+  // OpenSSL returns all bits if the certificate has no key usage.
+  if ((X509_get_key_usage(certificate) & (KU_DIGITAL_SIGNATURE | KU_NON_REPUDIATION)) == 0)
+    return fail("is not for signatures: key usage has neither digitalSignature nor nonRepudiation");
+  const std::unique_ptr<EXTENDED_KEY_USAGE, Freed<EXTENDED_KEY_USAGE_free>> uses(
+      static_cast<EXTENDED_KEY_USAGE*>(
+          X509_get_ext_d2i(certificate, NID_ext_key_usage, nullptr, nullptr)));
+  if (!uses) return {};
+  // id-kp-documentSigning (RFC 9336), for which OpenSSL 3.0 has no NID.
+  const std::unique_ptr<ASN1_OBJECT, Freed<ASN1_OBJECT_free>> document_signing(
+      OBJ_txt2obj("1.3.6.1.5.5.7.3.36", 1));
+  for (int i = 0; i < sk_ASN1_OBJECT_num(uses.get()); ++i) {
+    const ASN1_OBJECT* use = sk_ASN1_OBJECT_value(uses.get(), i);
+    const int nid = OBJ_obj2nid(use);
+    if (nid == NID_email_protect || nid == NID_anyExtendedKeyUsage ||
+        OBJ_cmp(use, document_signing.get()) == 0)
+      return {};
+  }
+  return fail(
+      "is not for documents: its extended key usage has neither documentSigning nor "
+      "emailProtection");
 }
 
 }  // namespace nonio::sign

@@ -27,4 +27,9 @@ Expected<std::string> make_cms(const Key::Impl& key, std::string_view before,
 Expected<Signed> sign_xml(const Key::Impl& key, std::string_view document, Time now,
                           const TimeStamping& stamping);
 
+/// Returns an error unless the key usage, if present, contains digitalSignature or nonRepudiation,
+/// and the extended key usage, if present, contains documentSigning, emailProtection or
+/// anyExtendedKeyUsage.
+Expected<void> check_signer_use(X509* certificate);
+
 }  // namespace nonio::sign

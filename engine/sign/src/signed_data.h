@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-
 #include "nonio/sign/verify.h"
 #include "openssl.h"
 #include "revocation.h"

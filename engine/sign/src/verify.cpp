@@ -2,9 +2,8 @@
 #include "nonio/sign/verify.h"
 
 #include <algorithm>
-#include <optional>
 
-#include "certificate_use.h"
+#include "key.h"
 #include "nonio/pdf/signature_field.h"
 #include "signed_data.h"
 #include "time_stamp.h"

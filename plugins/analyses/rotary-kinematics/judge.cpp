@@ -2,16 +2,13 @@
 #include "judge.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <set>
 #include <tuple>
-#include <vector>
 
 #include "nonio/math/distributions.h"
-#include "nonio/math/rotary.h"
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
 

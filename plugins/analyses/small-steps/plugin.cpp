@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "nonio/math/differences.h"
 #include "nonio/math/fine_motion.h"

@@ -4,16 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <string>
-#include <vector>
 
 #include "nonio/math/differences.h"
 #include "nonio/math/spindle.h"
 #include "nonio/math/thermal.h"
-#include "nonio/sdk/observations.h"
-#include "nonio/sdk/results.h"
 
 namespace nonio::spindle {
 namespace {

@@ -78,26 +78,25 @@ void hidden(const AxisAnalysis& a, const VdiResult& vdi, Evaluation& e) {
 }
 
 Expected<Evaluation> analyse(const AnalysisInput& in) {
-  auto begun = begin_axis_analysis(in);
-  if (!begun) return fail(begun.error());
+  NONIO_TRY(auto begun, begin_axis_analysis(in));
   const bool from_range = in.options.text("standard_deviation") == "from-range";
   const VdiResult result = evaluate_vdi3441(
-      begun->test, from_range ? StandardDeviation::from_range : StandardDeviation::direct);
+      begun.test, from_range ? StandardDeviation::from_range : StandardDeviation::direct);
   Evaluation e;
-  add_values(e, *begun, result);
-  e.points = table(*begun, result);
-  e.findings = std::move(begun->findings);
+  add_values(e, begun, result);
+  e.points = table(begun, result);
+  e.findings = std::move(begun.findings);
   name_absent(e.findings);
-  if (from_range && begun->test.most_approaches() > 10)
+  if (from_range && begun.test.most_approaches() > 10)
     e.findings.push_back(
         {"vdi.range-of-too-many",
          true,
-         {{"readings", static_cast<double>(begun->test.most_approaches()), Quantity::count}}});
-  hidden(*begun, result, e);
+         {{"readings", static_cast<double>(begun.test.most_approaches()), Quantity::count}}});
+  hidden(begun, result, e);
   for (Finding& f : e.findings) f.measurement = in.measurement.id;
   e.notes.push_back({from_range ? "method.vdi-from-range" : "method.vdi-direct"});
-  if (begun->budget) e.notes.push_back({"method.vdi-uncertainty"});
-  note_scatter(e, *begun, "P, Ps_max, Ps_mean");
+  if (begun.budget) e.notes.push_back({"method.vdi-uncertainty"});
+  note_scatter(e, begun, "P, Ps_max, Ps_mean");
   return e;
 }
 

@@ -2,12 +2,72 @@
 #include <algorithm>
 #include <cmath>
 
-#include "merge.h"
 #include "nonio/controllers/list.h"
 #include "nonio/controllers/replay.h"
+#include "nonio/controllers/text.h"
+#include "nonio/sdk/plugin.h"
 
 namespace nonio::aerotech {
+
 namespace {
+
+class Blocks {
+ public:
+  std::int64_t axis_of(std::string_view line) {
+    const auto words = controllers::words_of(line.substr(0, line.find_first_of(";'")));
+    if (words.empty()) return axis_;
+    const bool starts = words[0] == ":START" && !open_;
+    if (starts)
+      axis_ = controllers::whole(words.size() > 1 ? words[1] : std::string_view()).value_or(0);
+    open_ = open_ || words[0].starts_with(":START");
+    const std::int64_t here = axis_;
+    if (words[0] == ":END") open_ = false, axis_ = 0;
+    return here;
+  }
+
+ private:
+  std::int64_t axis_ = 0;
+  bool open_ = false;
+};
+
+bool has_tables(const std::string& text) { return text.find(":START") != std::string::npos; }
+
+/// Replaces the tables of one axis (:START n ... :END) in a backup; other axes and planes are kept.
+Expected<std::vector<Artifact>> merge(const MergeInput& in) {
+  std::string fresh, words;
+  std::int64_t axis = 0;
+  Blocks blocks;
+  for (const Artifact& f : in.table)
+    for (const std::string_view line : controllers::lines_of(f.bytes)) {
+      if (const std::int64_t of = blocks.axis_of(line); of != 0) {
+        axis = of;
+        fresh += words + std::string(line) + "\n";
+        words.clear();
+      } else if (line.starts_with(';')) {
+        words += std::string(line) + "\n";
+      }
+    }
+  if (axis == 0) return fail("no new table of axis " + in.axis);
+  std::vector<Artifact> out;
+  for (const Artifact& f : in.backup) {
+    Blocks of_file;
+    auto text = controllers::with_lines(
+        controllers::without_origin(f.bytes, ";", in.axis, [](std::string_view) { return true; }),
+        [&](std::string_view line) { return of_file.axis_of(line) == axis; }, fresh, {});
+    if (!text) continue;
+    if (!out.empty())
+      return fail("two files of the backup hold tables of axis " + std::to_string(axis) +
+                  ": the control adds them; take one out first");
+    out.push_back({f.name, std::move(*text)});
+  }
+  for (const Artifact& f : in.backup)
+    if (out.empty() && has_tables(f.bytes))
+      out.push_back(
+          {f.name, *controllers::with_lines(
+                       f.bytes, [](std::string_view) { return false; }, fresh, f.bytes.size())});
+  if (out.empty()) return fail("the backup holds no table (:START)");
+  return out;
+}
 
 using Confidence = ControlTable::Confidence;
 using controllers::CrossCurve;
@@ -137,9 +197,8 @@ struct Parser {
       std::reverse(raw.position.begin(), raw.position.end());
       std::reverse(raw.plus.begin(), raw.plus.end());
     }
-    auto read = controllers::loaded(declared(), raw);
-    if (!read) return tl::unexpected<Error>(read.error());
-    tables.push_back(std::move(*read));
+    NONIO_TRY(auto read, controllers::loaded(declared(), raw));
+    tables.push_back(std::move(read));
     return {};
   }
   Expected<void> plane_table(const std::vector<std::string_view>& head,
@@ -190,9 +249,8 @@ struct Parser {
 };
 
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
-  const auto axes = controllers::known_axes(in);
-  if (!axes) return tl::unexpected<Error>(axes.error());
-  Parser parser{*axes};
+  NONIO_TRY(const auto axes, controllers::known_axes(in));
+  Parser parser{axes};
   for (const Artifact& f : in.files)
     if (auto ended = controllers::ends_whole(f.name, f.bytes); !ended)
       return tl::unexpected<Error>(ended.error());
@@ -215,18 +273,16 @@ Expected<OutputResult> write(const ControllerInput& in) {
                                    .parse = parse,
                                    .turn_end = controllers::TurnEnd::closed,
                                    .holds_documented = true};
-  const auto jobs = controllers::write_axes(in, writer, result);
-  if (!jobs) return tl::unexpected<Error>(jobs.error());
-  const Campaign campaign = controllers::with_axes_of(in, *jobs);
-  const auto axes = controllers::known_axes({{}, campaign, in.options});
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto jobs, controllers::write_axes(in, writer, result));
+  const Campaign campaign = controllers::with_axes_of(in, jobs);
+  NONIO_TRY(const auto axes, controllers::known_axes({{}, campaign, in.options}));
   for (const CrossJob& set :
        controllers::cross_jobs(in, controllers::SecondSide::not_known, result)) {
     if (set.volume || set.curves.size() != 2) {
       result.notes.push_back(controllers::not_in_format(writer.name, set.measurement));
       continue;
     }
-    if (controllers::lacks_number(set.moving(), in, *axes, set.measurement, result)) continue;
+    if (controllers::lacks_number(set.moving(), in, axes, set.measurement, result)) continue;
     if (std::any_of(set.curves.begin(), set.curves.end(),
                     [](const CrossCurve& c) { return std::fabs(c.position.front()) > 1e-9; }))
       return fail("diagonals of " + set.measurement +
@@ -240,8 +296,8 @@ Expected<OutputResult> write(const ControllerInput& in) {
                                        c.input + ".reference_mm");
     if (controllers::oversized(set, in, result)) continue;
     const std::vector<Artifact> file{
-        {"aerotech-plane-" + controllers::file_part(set.measurement) + ".cal", plane(set, *axes)}};
-    if (auto done = controllers::predict_cross(set, file, parse, *jobs, in, result); !done)
+        {"aerotech-plane-" + controllers::file_part(set.measurement) + ".cal", plane(set, axes)}};
+    if (auto done = controllers::predict_cross(set, file, parse, jobs, in, result); !done)
       return tl::unexpected<Error>(done.error());
     result.artifacts.push_back(file.front());
   }

@@ -60,11 +60,10 @@ Expected<NumberTables> settings_of_axes(const Settings& options,
 }
 
 Expected<std::vector<KnownAxis>> known_axes(const TableInput& in) {
-  auto settings = settings_of_axes(in.options);
-  if (!settings) return tl::unexpected<Error>(settings.error());
+  NONIO_TRY(auto settings, settings_of_axes(in.options));
   std::vector<KnownAxis> axes;
   for (const Axis& a : in.campaign.machine.axes) {
-    KnownAxis axis{a.name, 0, a.rotary, (*settings)[a.name]};
+    KnownAxis axis{a.name, 0, a.rotary, settings[a.name]};
     if (const auto n = axis.setting("number"); n && *n >= 1.0 && *n < 1e6)
       axis.number = static_cast<std::size_t>(*n);
     axes.push_back(std::move(axis));

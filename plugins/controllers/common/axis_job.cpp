@@ -12,10 +12,65 @@
 #include "nonio/sdk/format.h"
 #include "resolution.h"
 #include "reversal_known.h"
-#include "series_jobs.h"
 
 namespace nonio::controllers {
+
 namespace {
+
+struct Positioning {
+  bool is = false, shape = false;
+};
+
+Positioning positioning(std::string_view name) {
+  Positioning p;
+  p.shape = name.ends_with("_shape");
+  if (p.shape) name.remove_suffix(6);
+  p.is = name == "EXX" || name == "EYY" || name == "EZZ";
+  return p;
+}
+
+/// Whether the axis has a positioning run, which gives a better table: one used for these step
+/// diagonals, or one of the same state.
+bool has_run(const ControllerInput& in, const Results::Analysed& a, const std::string& axis) {
+  const auto& all = in.campaign.measurements;
+  const auto of = std::find_if(all.begin(), all.end(),
+                               [&](const Measurement& m) { return m.id == a.measurement; });
+  const auto& uses = a.evaluation.uses;
+  for (std::size_t i = 0; i < std::min(all.size(), in.observations.size()); ++i)
+    if (all[i].kind == "axis" && all[i].axis == axis && in.observations[i].size() > 0 &&
+        (std::find(uses.begin(), uses.end(), all[i].id) != uses.end() ||
+         (of != all.end() && state_of(all[i]) == state_of(*of))))
+      return true;
+  return false;
+}
+
+/// Returns jobs from step diagonals (series EXX, EYY, EZZ; EXX_shape if the scale is unknown) for
+/// axes without positioning runs in the same state, which would give a better table. A gantry axis
+/// gets one job per side.
+std::vector<AxisJob> series_jobs(const ControllerInput& in) {
+  std::vector<AxisJob> jobs;
+  for (const Results::Analysed& a : in.results.analyses)
+    for (const Series& s : a.evaluation.series) {
+      const Positioning p = positioning(s.name);
+      if (!p.is || s.position.size() < 2 || has_run(in, a, s.over)) continue;
+      AxisJob job;
+      job.axis = s.over;
+      job.measurement = a.measurement;
+      job.from_diagonals = true;
+      job.scale_known = !p.shape;
+      job.curve.position = s.position;
+      job.curve.mean = job.curve.plus = s.value;
+      job.unresolved = unresolved_step(in, a.measurement, s.position, s.value);
+      jobs.push_back(job);
+      // Both gantry sides have the same error, because the diagonals measure the center of the
+      // beam.
+      const Axis* axis = in.campaign.machine.axis(s.over);
+      if (axis == nullptr || axis->slave.empty()) continue;
+      job.axis = axis->slave;
+      jobs.push_back(std::move(job));
+    }
+  return jobs;
+}
 
 Expected<void> check_names(const NumberTables& settings, const ControllerInput& input) {
   std::set<std::string> known;
@@ -352,9 +407,8 @@ std::optional<double> AxisJob::position_setting(std::string_view name) const {
 Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
                                          const std::vector<std::string_view>& keys,
                                          OutputResult& result) {
-  auto settings = settings_of_axes(input.options, keys);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  if (auto known = check_names(*settings, input); !known)
+  NONIO_TRY(auto settings, settings_of_axes(input.options, keys));
+  if (auto known = check_names(settings, input); !known)
     return tl::unexpected<Error>(known.error());
   std::vector<AxisJob> all, jobs;
   const auto& measurements = input.campaign.measurements;
@@ -385,7 +439,7 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
       continue;
     }
     job.stem = file_part(job.axis);
-    if (const auto it = settings->find(job.axis); it != settings->end()) job.settings = it->second;
+    if (const auto it = settings.find(job.axis); it != settings.end()) job.settings = it->second;
     if (const Measurement* m = measurement_of(input, job.measurement);
         m != nullptr && m->compensation == "off")
       job.settings[job.rotary ? "backlash_deg" : "backlash_mm"] = 0.0;

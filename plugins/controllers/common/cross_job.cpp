@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "nonio/controllers/replay.h"
 #include "nonio/controllers/size.h"

@@ -87,9 +87,7 @@ Expected<void> place_points(Sheet& s, const Writer& w) {
     return fail("axis " + s.job.axis + ": this control has its points every " +
                 with_unit(s.job, w.fixed_step, 4) + ", step_mm has no effect");
   const math::GridRule rule = rule_of(s.job, s.input, w, t, s.reference);
-  const auto grid = math::choose_grid(wanted(s.job, w), rule);
-  if (!grid) return tl::unexpected<Error>(grid.error());
-  s.grid = *grid;
+  NONIO_TRY(s.grid, math::choose_grid(wanted(s.job, w), rule));
   if (t.entry == Entry::increment && !rule.turn) surround(s.grid, s.reference);
   constexpr double rounding = 1e-9;
   if (w.within_turn && s.job.rotary &&
@@ -265,31 +263,29 @@ Expected<bool> write_axis(AxisJob& job, const ControllerInput& input, const Writ
   if (refused(job, directions ? Columns::both : Columns::mean, result)) return false;
   if (job.rotary && !w.table.rotary)
     return fail("axis " + job.axis + ": these tables are of linear axes only");
-  const auto table = w.of_axis ? w.of_axis(job, w.table) : Expected<ControlTable>(w.table);
-  if (!table) return tl::unexpected<Error>(table.error());
+  NONIO_TRY(const auto table,
+            w.of_axis ? w.of_axis(job, w.table) : Expected<ControlTable>(w.table));
   job.backlash_step = w.backlash_in_steps
-                          ? table->value_step.of(job.rotary) / static_cast<double>(w.coarser.now)
+                          ? table.value_step.of(job.rotary) / static_cast<double>(w.coarser.now)
                           : 1e-6 / job.per_si();
-  const auto sheet = sheet_of(job, *table, input, w, directions, result);
-  if (!sheet) return tl::unexpected<Error>(sheet.error());
-  auto files = w.files(*sheet);
-  if (!files) return tl::unexpected<Error>(files.error());
+  NONIO_TRY(const auto sheet, sheet_of(job, table, input, w, directions, result));
+  NONIO_TRY(auto files, w.files(sheet));
   const Campaign campaign = with_axes_of(input, {job});
-  auto read = w.parse({*files, campaign, input.options});
+  auto read = w.parse({files, campaign, input.options});
   std::optional<math::Correction> correction;
   if (read) correction = math::correction_of(*read, job.axis, job.present_backlash());
   if (!correction)
     return fail("axis " + job.axis + ": the table written cannot be read back: " +
                 (read ? "it is of another axis" : read.error().message));
-  const TableSize size = size_of(*read, job.axis, sheet->position);
-  if (oversized(job, size, sheet->value_step(), result)) return false;
-  if (!sheet->directions && job.curve.bidirectional()) look_at_reversal(job, *table, result);
+  const TableSize size = size_of(*read, job.axis, sheet.position);
+  if (oversized(job, size, sheet.value_step(), result)) return false;
+  if (!sheet.directions && job.curve.bidirectional()) look_at_reversal(job, table, result);
   predict(job, *correction, result);
-  if (!anchored(*table) || job.position_setting("reference"))
-    note_zero(job, sheet->reference, result);
+  if (!anchored(table) || job.position_setting("reference"))
+    note_zero(job, sheet.reference, result);
   note_size(job, size, result);
   job.loaded = std::move(*read);
-  for (Artifact& f : *files) result.artifacts.push_back(std::move(f));
+  for (Artifact& f : files) result.artifacts.push_back(std::move(f));
   return true;
 }
 

@@ -46,17 +46,15 @@ Expected<void> whole_text(const Artifact& f, std::size_t points) {
 
 Expected<std::vector<LoadedTable>> parse_files(const TableInput& in, const ControlTable& table,
                                                std::string_view name, const Take& take) {
-  const auto axes = known_axes(in);
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto axes, known_axes(in));
   std::vector<LoadedTable> tables;
   for (const Artifact& f : in.files) {
-    RawTable raw{axis_of_file(*axes, f.name, std::string(name) + "-"), {}, {}};
+    RawTable raw{axis_of_file(axes, f.name, std::string(name) + "-"), {}, {}};
     raw.backlash = parameter_in(f.bytes, table.backlash);
     std::size_t points = 0;
     for (const std::string_view line : lines_of(f.bytes)) {
-      const auto taken = take(line, raw);
-      if (!taken) return tl::unexpected<Error>(taken.error());
-      points += *taken ? 1U : 0U;
+      NONIO_TRY(const auto taken, take(line, raw));
+      points += taken ? 1U : 0U;
     }
     if (points == 0) continue;
     if (auto ok = whole_text(f, points); !ok) return tl::unexpected<Error>(ok.error());
@@ -64,13 +62,11 @@ Expected<std::vector<LoadedTable>> parse_files(const TableInput& in, const Contr
       for (auto* column : {&raw.position, &raw.plus, &raw.minus})
         std::reverse(column->begin(), column->end());
     }
-    auto read = loaded(table, raw);
-    if (!read) return tl::unexpected<Error>(read.error());
-    const auto& x = read->position.front();
-    const bool turn = read->rotary && x.front() == 0.0 && std::fabs(x.back() - full_turn) < 1e-9;
-    if (turn && read->plus.front() == read->plus.back())
-      read->outside = LoadedTable::Outside::repeats;
-    tables.push_back(std::move(*read));
+    NONIO_TRY(auto read, loaded(table, raw));
+    const auto& x = read.position.front();
+    const bool turn = read.rotary && x.front() == 0.0 && std::fabs(x.back() - full_turn) < 1e-9;
+    if (turn && read.plus.front() == read.plus.back()) read.outside = LoadedTable::Outside::repeats;
+    tables.push_back(std::move(read));
   }
   if (tables.empty()) return fail("no table of " + std::string(name) + " in it");
   return tables;

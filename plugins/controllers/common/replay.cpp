@@ -2,7 +2,6 @@
 #include "nonio/controllers/replay.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "nonio/controllers/kit.h"
 #include "nonio/math/axis_test.h"

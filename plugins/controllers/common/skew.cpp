@@ -121,12 +121,11 @@ Expected<OutputResult> write_skew(const ControllerInput& in, const Writer& w,
   for (const std::string& axis : axes) stated = states_active(in, axis, {}, true, result) && stated;
   if (!stated) return result;
   Artifact file{w.name + "-skew.cfg", text(faces)};
-  const auto read = w.parse({{file}, in.campaign, in.options});
-  if (!read) return tl::unexpected<Error>(read.error());
+  NONIO_TRY(const auto read, w.parse({{file}, in.campaign, in.options}));
   for (const Face& f : faces) {
     const double wanted = skew_factor(f.AC, f.BD, f.AD);
     double found = NAN;
-    for (const LoadedTable& t : *read)
+    for (const LoadedTable& t : read)
       if (t.output == f.first && t.input.front() == f.second) found = -t.plus.back();
     if (!(std::fabs(found - wanted) < 2e-7))  // 6 decimals of mm, and a product of two factors
       return fail(w.name + ": plane " + f.plane + " cannot be read back");
@@ -138,7 +137,7 @@ Expected<OutputResult> write_skew(const ControllerInput& in, const Writer& w,
   }
   // The correction changes the commanded position, so it applies to both motors of an axis.
   for (const CrossJob& set : cross_jobs(in, SecondSide::moves_along, result))
-    predict_lines(set, {.tables = *read}, result);
+    predict_lines(set, {.tables = read}, result);
   result.artifacts.push_back(std::move(file));
   note_facts(w, result);
   return result;

@@ -41,10 +41,9 @@ Expected<std::vector<Artifact>> files(const controllers::Sheet& s) {
 }
 
 Expected<OutputResult> write(const ControllerInput& in) {
-  const auto t = controllers::chosen(declared(), in.options);
-  if (!t) return tl::unexpected<Error>(t.error());
+  NONIO_TRY(const auto t, controllers::chosen(declared(), in.options));
   return controllers::write_tables(
-      in, {"fagor-8055", *t, {"step", "first", "reference", "backlash"}, files, parse});
+      in, {"fagor-8055", t, {"step", "first", "reference", "backlash"}, files, parse});
 }
 
 }  // namespace

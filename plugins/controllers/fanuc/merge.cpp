@@ -176,13 +176,12 @@ Expected<std::vector<Artifact>> merge(const MergeInput& in) {
     return fail("3605#0 of controlled axis " + std::to_string(axis) +
                 " does not fit the new table, which has " + (two ? "two directions" : "one set") +
                 ": set it on the control and save again, or change option directions");
-  const auto shift = shift_of(fresh, backup, axis, in);
-  if (!shift) return tl::unexpected<Error>(shift.error());
+  NONIO_TRY(const auto shift, shift_of(fresh, backup, axis, in));
   const std::set<std::int64_t> points{3620, 3621, 3622, 3626};
   for (const Word& w : words) {
     const bool moves = w.axis != 0 ? points.contains(w.number) : w.number >= first_pitch;
-    const std::int64_t number = w.axis == 0 && moves ? w.number + *shift : w.number;
-    backup.set(number, w.axis, w.axis != 0 && moves ? w.value + *shift : w.value);
+    const std::int64_t number = w.axis == 0 && moves ? w.number + shift : w.number;
+    backup.set(number, w.axis, w.axis != 0 && moves ? w.value + shift : w.value);
   }
   return std::vector<Artifact>{backup.file()};
 }

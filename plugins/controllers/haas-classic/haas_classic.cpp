@@ -40,10 +40,9 @@ Expected<std::vector<Artifact>> files(const controllers::Sheet& s) {
 }
 
 Expected<OutputResult> write(const ControllerInput& in) {
-  const auto t = controllers::chosen(declared(), in.options);
-  if (!t) return tl::unexpected<Error>(t.error());
+  NONIO_TRY(const auto t, controllers::chosen(declared(), in.options));
   return controllers::write_tables(in, {.name = "haas-classic",
-                                        .table = *t,
+                                        .table = t,
                                         .keys = {"backlash"},
                                         .files = files,
                                         .parse = parse,

@@ -190,12 +190,11 @@ Expected<void> check_type(const TableInput& in) {
 // floats. The file name identifies the axis, unless the machine has only one.
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (auto fits = check_type(in); !fits) return tl::unexpected<Error>(fits.error());
-  const auto axes = controllers::known_axes(in);
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto axes, controllers::known_axes(in));
   const ControlTable t = table_of(in.options);
   std::vector<LoadedTable> tables;
   for (const Artifact& f : in.files) {
-    controllers::RawTable raw{controllers::axis_of_file(*axes, f.name, "linuxcnc-"), {}, {}};
+    controllers::RawTable raw{controllers::axis_of_file(axes, f.name, "linuxcnc-"), {}, {}};
     raw.backlash = 0.0;  // the control ignores BACKLASH with a table
     const double unit = t.value_unit.of(raw.axis.rotary);
     std::size_t taken = 0;
@@ -222,11 +221,10 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     if (t.entry == ControlTable::Entry::absolute && rises && !flat)
       return controllers::fail_at(
           f.name, 1, "columns 2 and 3 are actual positions: state type = 0 (COMP_FILE_TYPE)");
-    auto read = controllers::loaded(flat && !rises ? corrections(t) : t, raw);
-    if (!read) return tl::unexpected<Error>(read.error());
-    for (auto* trims : {&read->plus, &read->minus})
+    NONIO_TRY(auto read, controllers::loaded(flat && !rises ? corrections(t) : t, raw));
+    for (auto* trims : {&read.plus, &read.minus})
       for (double& v : *trims) v = static_cast<double>(static_cast<float>(v / unit)) * unit;
-    tables.push_back(std::move(*read));
+    tables.push_back(std::move(read));
   }
   if (tables.empty()) return fail("no line is taken: there is no compensation");
   return tables;

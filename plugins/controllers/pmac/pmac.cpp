@@ -247,8 +247,7 @@ Expected<LoadedTable> table_of(const Definition& d, const controllers::KnownAxis
 }
 
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
-  const auto axes = controllers::known_axes(in);
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto axes, controllers::known_axes(in));
   std::vector<LoadedTable> tables;
   std::map<std::string, double> backlash;
   std::optional<Error> unknown;
@@ -256,12 +255,12 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     NONIO_TRY(const auto all, Definitions(f).all());
     if (all.empty()) {
       if (const auto v = controllers::parameter_in(f.bytes, declared().backlash))
-        backlash[axis_of_file(*axes, f.name, "pmac-").name] = *v;
+        backlash[axis_of_file(axes, f.name, "pmac-").name] = *v;
       continue;
     }
     for (const Definition& d : all) {
-      const controllers::KnownAxis axis = axis_of(*axes, d);
-      auto read = table_of(d, axis, d.source == d.target ? axis : axis_numbered(*axes, d.source));
+      const controllers::KnownAxis axis = axis_of(axes, d);
+      auto read = table_of(d, axis, d.source == d.target ? axis : axis_numbered(axes, d.source));
       if (read) {
         tables.push_back(std::move(*read));
       } else {

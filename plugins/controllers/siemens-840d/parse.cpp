@@ -217,8 +217,7 @@ KnownAxis axis_of(const std::vector<KnownAxis>& axes, const std::string& word) {
 }  // namespace
 
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
-  const auto axes = controllers::known_axes(in);
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto axes, controllers::known_axes(in));
   Memory memory;
   // The default is the limit of the smallest control, so it is not applied to files of larger ones.
   constexpr std::int64_t fewest = 200;
@@ -235,14 +234,14 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const std::string system = std::to_string(in.options.integer("measuring_system")) + ",";
   for (const auto& [index, table] : memory.encoder) {
     if (index.rfind(system, 0) != 0) continue;
-    const KnownAxis axis = axis_of(*axes, index.substr(system.size()));
+    const KnownAxis axis = axis_of(axes, index.substr(system.size()));
     if (auto done = add(loaded(table, axis, axis)); !done)
       return tl::unexpected<Error>(done.error());
     if (const auto lost = memory.backlash.find(index); lost != memory.backlash.end())
       tables.back().backlash = lost->second / axis.per_si();
   }
   for (const auto& [number, table] : memory.cec)
-    if (auto done = add(loaded(table, axis_of(*axes, table.input), axis_of(*axes, table.output)));
+    if (auto done = add(loaded(table, axis_of(axes, table.input), axis_of(axes, table.output)));
         !done)
       return tl::unexpected<Error>(done.error());
   return tables;

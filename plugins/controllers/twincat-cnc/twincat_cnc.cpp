@@ -2,13 +2,79 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
-#include "merge.h"
 #include "nonio/controllers/list.h"
 #include "nonio/controllers/replay.h"
+#include "nonio/controllers/text.h"
+#include "nonio/sdk/plugin.h"
 
 namespace nonio::twincat_cnc {
+
 namespace {
+
+constexpr std::string_view lose_key = "getriebe[0].lose";
+
+std::string_view first_word(std::string_view line) {
+  const auto words = controllers::words_of(line);
+  return words.empty() ? std::string_view() : words.front();
+}
+
+bool is_table(std::string_view line) { return first_word(line).starts_with("kw.ssfk."); }
+
+/// "# P-AXIS-00103 getriebe[0].lose = 40"
+bool is_word(std::string_view line) {
+  return line.starts_with("# P-AXIS-00103 ") && line.find(lose_key) != std::string_view::npos;
+}
+
+std::optional<std::int64_t> number_of(const std::string& list) {
+  for (const std::string_view line : controllers::lines_of(list))
+    if (const auto words = controllers::words_of(line);
+        words.size() > 1 && (words[0] == "kopf.achs_nr" || words[0] == "kopf.log_achs_nr"))
+      return controllers::whole(words[1]);
+  return std::nullopt;
+}
+
+std::string lose_of(std::string_view word) {
+  const auto words =
+      controllers::words_of(word.substr(word.find(lose_key) + lose_key.size()), " =\t\r");
+  return words.empty() ? std::string() : std::string(words.front());
+}
+
+/// Replaces kw.ssfk in the list of the axis; other content such as kw.crosscomp is kept.
+Expected<std::vector<Artifact>> merge(const MergeInput& in) {
+  const Artifact* table = nullptr;
+  for (const Artifact& f : in.table)
+    if (f.bytes.find("kw.ssfk.") != std::string::npos) table = &f;
+  const auto number = table == nullptr ? std::nullopt : number_of(table->bytes);
+  if (!number) return fail("no new table of axis " + in.axis);
+  std::string fresh, value;
+  for (const std::string_view line : controllers::lines_of(table->bytes)) {
+    if (is_word(line)) value = lose_of(line);
+    if (line.starts_with('#') || is_table(line)) fresh += std::string(line) + "\n";
+  }
+  std::vector<Artifact> out;
+  for (const Artifact& f : in.backup) {
+    if (number_of(f.bytes) != number) continue;
+    if (!out.empty())
+      return fail("two files of the backup are lists of axis " + std::to_string(*number));
+    const std::string kept =
+        controllers::without_origin(f.bytes, "#", in.axis, [](std::string_view) { return true; });
+    auto text = *controllers::with_lines(
+        kept, [](std::string_view line) { return is_table(line) || is_word(line); }, fresh,
+        kept.size());
+    if (!value.empty())
+      if (auto with_value = controllers::with_lines(
+              text, [](std::string_view line) { return first_word(line) == lose_key; },
+              std::string(lose_key) + "  " + value + "\n", {}))
+        text = std::move(*with_value);
+    out.push_back({f.name, std::move(text)});
+  }
+  if (out.empty())
+    return fail("the backup holds no list of axis " + std::to_string(*number) +
+                " (kopf.achs_nr): load the new list as it is");
+  return out;
+}
 
 using Confidence = ControlTable::Confidence;
 using controllers::CrossCurve;
@@ -69,10 +135,9 @@ Expected<std::vector<std::string>> words_with_lose(const Sheet& s) {
 }
 
 Expected<std::vector<Artifact>> files(const Sheet& s) {
-  const auto words = words_with_lose(s);
-  if (!words) return tl::unexpected<Error>(words.error());
+  NONIO_TRY(const auto words, words_with_lose(s));
   const auto units = [&](double x) { return std::to_string(std::llround(x / s.position_unit())); };
-  std::string out = head(*words, s.job.number, s.job.axis);
+  std::string out = head(words, s.job.number, s.job.axis);
   out += line("kw.ssfk.unit", "1") + line("kw.ssfk.interval", units(s.grid.step)) +
          line("kw.ssfk.kw_startpos", units(s.grid.first)) +
          line("kw.ssfk.kw_nr_max", std::to_string(s.grid.points)) +
@@ -148,18 +213,16 @@ Expected<LoadedTable> cross(const List& list, const std::vector<controllers::Kno
 }
 
 std::optional<double> lose_in(std::string_view bytes, bool rotary) {
-  const std::string_view key = "getriebe[0].lose";
-  const std::size_t at = bytes.find(key);
+  const std::size_t at = bytes.find(lose_key);
   if (at == std::string_view::npos) return std::nullopt;
-  const auto words = controllers::words_of(bytes.substr(at + key.size(), 60), " =\t\r\n");
+  const auto words = controllers::words_of(bytes.substr(at + lose_key.size(), 60), " =\t\r\n");
   const auto v = controllers::whole(words.empty() ? "" : words.front());
   return v ? std::optional(static_cast<double>(*v) * declared().position_unit.of(rotary))
            : std::nullopt;
 }
 
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
-  const auto axes = controllers::known_axes(in);
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto axes, controllers::known_axes(in));
   const std::string said = in.options.text("cross_sign");
   std::vector<LoadedTable> tables;
   for (const Artifact& f : in.files) {
@@ -176,18 +239,16 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
       if (f.bytes.find("kw.") == std::string::npos) return fail(missing);
       return controllers::fail_at(f.name, 1, missing);
     }
-    const auto axis = axis_numbered(*axes, static_cast<std::size_t>(number->second));
+    const auto axis = axis_numbered(axes, static_cast<std::size_t>(number->second));
     if (list.count("kw.ssfk.kw_nr_max") != 0) {
-      auto read = screw(list, axis);
-      if (!read) return tl::unexpected<Error>(read.error());
-      if (!read->backlash) read->backlash = lose_in(f.bytes, axis.rotary);
-      tables.push_back(std::move(*read));
+      NONIO_TRY(auto read, screw(list, axis));
+      if (!read.backlash) read.backlash = lose_in(f.bytes, axis.rotary);
+      tables.push_back(std::move(read));
     }
     if (list.count("kw.crosscomp.last_index") == 0) continue;
     if (said.empty()) return fail("the sign of kw.crosscomp is not known: set cross_sign");
-    auto read = cross(list, *axes, axis, said == "error" ? -1.0 : 1.0);
-    if (!read) return tl::unexpected<Error>(read.error());
-    tables.push_back(std::move(*read));
+    NONIO_TRY(auto read, cross(list, axes, axis, said == "error" ? -1.0 : 1.0));
+    tables.push_back(std::move(read));
   }
   return tables;
 }
@@ -218,8 +279,7 @@ Expected<void> write_cross(const ControllerInput& in,
                            const std::vector<controllers::AxisJob>& pitch, OutputResult& result) {
   const std::string said = in.options.text("cross_sign");
   const Campaign campaign = controllers::with_axes_of(in, pitch);
-  const auto axes = controllers::known_axes({{}, campaign, in.options});
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto axes, controllers::known_axes({{}, campaign, in.options}));
   if (said.empty()) return {};
   const auto jobs = controllers::cross_jobs(in, controllers::SecondSide::own_table, result);
   for (const CrossJob& job : jobs) {
@@ -228,14 +288,14 @@ Expected<void> write_cross(const ControllerInput& in,
       continue;
     }
     if (auto ok = controllers::fits(job, in.options); !ok) return ok;
-    if (controllers::lacks_number(job.moving(), in, *axes, job.measurement, result)) continue;
+    if (controllers::lacks_number(job.moving(), in, axes, job.measurement, result)) continue;
     if (controllers::oversized(job, in, result)) continue;
     std::vector<Artifact> files;
     for (const CrossCurve& c : job.curves)
       files.push_back({"twincat-cnc-cross-" + controllers::file_part(c.output) +
                            (jobs.size() > 1 ? "-" + controllers::file_part(job.measurement) : "") +
                            ".lis",
-                       cross_list(c, *axes, said == "error" ? 1.0 : -1.0, job)});
+                       cross_list(c, axes, said == "error" ? 1.0 : -1.0, job)});
     if (auto done = controllers::predict_cross(job, files, parse, pitch, in, result); !done)
       return done;
     for (Artifact& f : files) result.artifacts.push_back(std::move(f));
@@ -253,9 +313,8 @@ Expected<OutputResult> write(const ControllerInput& in) {
       .parse = parse,
       .directions = controllers::Directions::by_option_without_backlash,
       .backlash_in_steps = true};
-  const auto jobs = controllers::write_axes(in, writer, result);
-  if (!jobs) return tl::unexpected<Error>(jobs.error());
-  if (auto done = write_cross(in, *jobs, result); !done) return tl::unexpected<Error>(done.error());
+  NONIO_TRY(const auto jobs, controllers::write_axes(in, writer, result));
+  if (auto done = write_cross(in, jobs, result); !done) return tl::unexpected<Error>(done.error());
   controllers::note_facts(writer, result);
   return result;
 }

@@ -108,9 +108,8 @@ std::string zero_words(const Block& b, const std::vector<AxisJob>& jobs) {
 }
 
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
-  const auto t = controllers::chosen(declared(), in.options);
-  if (!t) return tl::unexpected<Error>(t.error());
-  const double sign = t->sign == ControlTable::Sign::error ? -1.0 : 1.0;
+  NONIO_TRY(const auto t, controllers::chosen(declared(), in.options));
+  const double sign = t.sign == ControlTable::Sign::error ? -1.0 : 1.0;
   std::vector<LoadedTable> tables;
   std::size_t first = 0;
   bool names = true;
@@ -164,16 +163,14 @@ bool second_side(const ControllerInput& in, OutputResult& result) {
 
 Expected<OutputResult> write(const ControllerInput& in) {
   OutputResult result;
-  const auto table = controllers::chosen(declared(), in.options);
-  if (!table) return tl::unexpected<Error>(table.error());
+  NONIO_TRY(const auto table, controllers::chosen(declared(), in.options));
   if (second_side(in, result)) return result;
   const controllers::Writer writer{
-      "twincat-volumetric", *table, {"reference", "backlash"}, {}, parse};
-  auto jobs = controllers::axis_jobs(in, writer.keys, result);
-  if (!jobs) return tl::unexpected<Error>(jobs.error());
+      "twincat-volumetric", table, {"reference", "backlash"}, {}, parse};
+  NONIO_TRY(auto jobs, controllers::axis_jobs(in, writer.keys, result));
   std::map<std::string, int> runs;
-  for (const AxisJob& j : *jobs) ++runs[j.axis];
-  std::erase_if(*jobs, [&](const AxisJob& j) {
+  for (const AxisJob& j : jobs) ++runs[j.axis];
+  std::erase_if(jobs, [&](const AxisJob& j) {
     const bool in_format = (j.axis == "X" || j.axis == "Y" || j.axis == "Z") && runs[j.axis] == 1;
     if (!in_format) result.notes.push_back(controllers::not_in_format(writer.name, j.measurement));
     return !in_format || controllers::refused(j, controllers::Columns::mean, result);
@@ -186,26 +183,25 @@ Expected<OutputResult> write(const ControllerInput& in) {
     return fail(
         "one file holds one state of the machine: leave one set of diagonals in the campaign");
   std::erase_if(sets, [&](const CrossJob& s) { return controllers::oversized(s, in, result); });
-  const auto blocks = blocks_of(*jobs, sets);
+  const auto blocks = blocks_of(jobs, sets);
   if (blocks.empty()) return result;
   std::string axes;
   std::vector<std::string> words{"campaign " + controllers::plain(in.campaign.id) +
                                  ": lengths in mm, errors by their ISO 230-1 names in mm"};
   for (const Block& b : blocks) axes += b.axis;
-  for (const AxisJob& j : *jobs)
+  for (const AxisJob& j : jobs)
     for (const std::string& warning : controllers::warnings(j, result)) words.push_back(warning);
-  for (const Block& b : blocks) words.push_back(zero_words(b, *jobs));
+  for (const Block& b : blocks) words.push_back(zero_words(b, jobs));
   for (const CrossJob& set : sets)
     for (std::string& line : controllers::set_words(set)) words.push_back(std::move(line));
-  const double sign = table->sign == ControlTable::Sign::error ? 1.0 : -1.0;
+  const double sign = table.sign == ControlTable::Sign::error ? 1.0 : -1.0;
   result.artifacts.push_back({"twincat-volumetric-" + axes + ".csv", text_of(blocks, sign, words)});
-  const auto read = parse({result.artifacts, in.campaign, in.options});
-  if (!read) return tl::unexpected<Error>(read.error());
-  for (AxisJob& job : *jobs) {
-    const auto c = math::correction_of(*read, job.axis, job.present_backlash());
+  NONIO_TRY(const auto read, parse({result.artifacts, in.campaign, in.options}));
+  for (AxisJob& job : jobs) {
+    const auto c = math::correction_of(read, job.axis, job.present_backlash());
     if (!c) continue;
-    const auto size = controllers::size_of(*read, job.axis, job.curve.position);
-    if (controllers::oversized(job, size, table->value_step.linear, result)) {
+    const auto size = controllers::size_of(read, job.axis, job.curve.position);
+    if (controllers::oversized(job, size, table.value_step.linear, result)) {
       result.artifacts.clear();
       return result;
     }
@@ -215,8 +211,8 @@ Expected<OutputResult> write(const ControllerInput& in) {
     controllers::note_size(job, size, result);
   }
   for (const CrossJob& set : sets) {
-    controllers::predict_lines(set, {.tables = *read}, result);
-    controllers::note_cross(set, *read, result);
+    controllers::predict_lines(set, {.tables = read}, result);
+    controllers::note_cross(set, read, result);
   }
   controllers::note_facts(writer, result);
   return result;

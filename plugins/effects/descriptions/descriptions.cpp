@@ -69,14 +69,13 @@ static Expected<Effect::Columns> of_time(const Observations& o, const Axis& axis
                                          const std::vector<double>& shape) {
   if (shape.size() != 1 || !(shape[0] >= 2.0 && shape[0] <= 1000.0))
     return fail("free-time: expected a number of knots, 2 to 1000");
-  const auto r = readings_of(o, axis);
-  if (!r) return fail(r.error());
+  NONIO_TRY(const auto r, readings_of(o, axis));
   const auto knots = static_cast<std::size_t>(std::lround(shape[0]));
-  const double step = r->duration / static_cast<double>(knots - 1);
+  const double step = r.duration / static_cast<double>(knots - 1);
   Effect::Columns columns(knots - 1, std::vector<double>(o.size(), 0.0));  // 0 at the first knot
   for (std::size_t i = 0; i < o.size(); ++i)
-    for (std::size_t k = 1; k < knots && r->moved[i]; ++k)
-      columns[k - 1][i] = std::max(0.0, 1.0 - std::fabs(r->t[i] / step - static_cast<double>(k)));
+    for (std::size_t k = 1; k < knots && r.moved[i]; ++k)
+      columns[k - 1][i] = std::max(0.0, 1.0 - std::fabs(r.t[i] / step - static_cast<double>(k)));
   return columns;
 }
 

@@ -5,10 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"

@@ -220,13 +220,12 @@ std::string plain(const std::string& name) {
 }
 
 Expected<std::vector<Law>> laws(const OutputInput& in, std::vector<Finding>& findings) {
-  const auto stated = stated_axes(in);
-  if (!stated) return fail(stated.error());
+  NONIO_TRY(const auto stated, stated_axes(in));
   // Stated displacements come first, because they take precedence over names.
   std::vector<const ModelFit*> fits;
   for (const ModelFit& fit : in.results.models) fits.push_back(&fit);
   std::stable_partition(fits.begin(), fits.end(), [&](const ModelFit* fit) {
-    return stated->contains(displacement_of(*fit));
+    return stated.contains(displacement_of(*fit));
   });
   std::vector<Law> out;
   for (const ModelFit* const of : fits) {
@@ -242,10 +241,10 @@ Expected<std::vector<Law>> laws(const OutputInput& in, std::vector<Finding>& fin
       findings.push_back(about("heat-compensation.tilt", displacement));
       continue;
     }
-    const auto entry = stated->find(displacement);
-    const std::string axis = runs != nullptr          ? fit.part
-                             : entry != stated->end() ? entry->second
-                                                      : axis_by_name(in.campaign, displacement);
+    const auto entry = stated.find(displacement);
+    const std::string axis = runs != nullptr         ? fit.part
+                             : entry != stated.end() ? entry->second
+                                                     : axis_by_name(in.campaign, displacement);
     if (axis.empty()) {
       findings.push_back(about("heat-compensation.no-axis", displacement));
       continue;
@@ -260,7 +259,7 @@ Expected<std::vector<Law>> laws(const OutputInput& in, std::vector<Finding>& fin
     const auto other =
         std::find_if(out.begin(), out.end(), [&](const Law& one) { return one.axis == law.axis; });
     if (other != out.end()) {
-      if (stated->contains(other->displacement) && entry == stated->end()) continue;
+      if (stated.contains(other->displacement) && entry == stated.end()) continue;
       Finding f = about("heat-compensation.two-displacements", displacement);
       f.texts.emplace_back("other", other->displacement);
       f.texts.emplace_back("axis", law.axis);

@@ -6,9 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/json.h"

@@ -9,9 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "nonio/sdk/format.h"
 #include "programs.h"

@@ -3,9 +3,7 @@
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
-#include <optional>
 #include <set>
-#include <string_view>
 
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"

@@ -275,13 +275,12 @@ Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, O
 }
 
 Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
-  const auto wiring = wiring_of(input, axis.rotary);
-  if (!wiring) return fail(wiring.error());
+  NONIO_TRY(const auto wiring, wiring_of(input, axis.rotary));
   NONIO_TRY(const auto entries,
-            entries_of(input.bytes, {wiring->target, wiring->reference, wiring->test}));
-  NONIO_TRY(const auto samples, Sampler(*wiring).samples(entries));
+            entries_of(input.bytes, {wiring.target, wiring.reference, wiring.test}));
+  NONIO_TRY(const auto samples, Sampler(wiring).samples(entries));
   if (samples.empty())
-    return fail("expected test numbers (1101 ...) of PV " + wiring->test +
+    return fail("expected test numbers (1101 ...) of PV " + wiring.test +
                 ", found none, and without them the stops of the axis are not known; in the log: " +
                 pvs_of(input.bytes) +
                 ". State the PV with the numbers as test_pv, or write a table with a row for each "
@@ -293,11 +292,11 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   const int sense = sense_of(listed);
   if (sense == 0) return fail("expected two targets or more that only rise or only fall");
   Runs runs(input, axis, axis.rotary);
-  if (auto ok = check_line(samples, *wiring, runs.observations(), axis.rotary); !ok)
+  if (auto ok = check_line(samples, wiring, runs.observations(), axis.rotary); !ok)
     return fail(ok.error());
   for (const Sample& s : samples) {
-    const double target = s.target * wiring->target_unit;
-    const double deviation = wiring->gain * s.reference * wiring->reference_unit - target;
+    const double target = s.target * wiring.target_unit;
+    const double deviation = wiring.gain * s.reference * wiring.reference_unit - target;
     const double seconds = 1e-6 * static_cast<double>(s.time - samples.front().time);
     if (auto ok = runs.add({s.step.cycle, static_cast<std::int8_t>(s.step.direction * sense),
                             target, deviation, s.line, seconds});

@@ -383,23 +383,22 @@ Expected<Observations> read_runs(const ReadInput& input) {
 }
 
 Expected<Observations> read_diagonal(const ReadInput& input) {
-  const auto span = span_of(input.campaign, input.measurement);
-  if (!span) return fail(span.error());
+  NONIO_TRY(const auto span, span_of(input.campaign, input.measurement));
   auto obs = read_runs(input);
   if (!obs) return obs;
   const auto& along = obs->axes.front().position;
-  const double slack = 1e-6 * span->length;
+  const double slack = 1e-6 * span.length;
   for (std::size_t i = 0; i < along.size(); ++i)
-    if (!(along[i] >= -slack && along[i] <= span->length + slack)) {
+    if (!(along[i] >= -slack && along[i] <= span.length + slack)) {
       Error error{"expected a distance from 0 to the length of the diagonal, " +
-                  fixed_text(1e3 * span->length, 3) + " mm (`from`, `to`), found " +
+                  fixed_text(1e3 * span.length, 3) + " mm (`from`, `to`), found " +
                   fixed_text(1e3 * along[i], 3) + " mm"};
       error.file = input.measurement.file;
       error.line = obs->source_line[i];
       error.column = "target_mm";
       return fail(std::move(error));
     }
-  spread(*obs, *span);
+  spread(*obs, span);
   return obs;
 }
 

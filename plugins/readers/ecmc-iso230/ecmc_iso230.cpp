@@ -190,8 +190,7 @@ void add_line_note(Observations& obs, const Axis& axis) {
 Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   NONIO_TRY(const auto contents, Parser().parse(input.bytes));
   if (auto ok = whole(contents); !ok) return fail(ok.error());
-  const auto unit = unit_of_file(contents, axis.rotary);
-  if (!unit) return fail(unit.error());
+  NONIO_TRY(const auto unit, unit_of_file(contents, axis.rotary));
   std::vector<double> targets;
   for (const auto& [position, target] : contents.targets) targets.push_back(target.value);
   const int listed = sense_of(targets);
@@ -201,8 +200,8 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
     const auto [direction, cycle, position] = key;
     const double target = targets[position - 1];
     // The difference is exact before the conversion.
-    if (auto ok = runs.add({cycle, static_cast<std::int8_t>(direction * listed), target * *unit,
-                            (value.value - target) * *unit, value.line});
+    if (auto ok = runs.add({cycle, static_cast<std::int8_t>(direction * listed), target * unit,
+                            (value.value - target) * unit, value.line});
         !ok)
       return fail(ok.error());
   }

@@ -243,9 +243,8 @@ int listed_in(const std::vector<Row>& rows) {
 }
 
 Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
-  const auto map = map_of(input.options, axis.rotary);
-  if (!map) return fail(map.error());
-  NONIO_TRY(const auto rows, TableReader(*map).read(input.bytes));
+  NONIO_TRY(const auto map, map_of(input.options, axis.rotary));
+  NONIO_TRY(const auto rows, TableReader(map).read(input.bytes));
   const int listed = listed_in(rows);
   Runs runs(input, axis, axis.rotary);
   for (const Row& row : rows) {
@@ -253,9 +252,9 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
       return fail(at_line(row.line,
                           "expected a first run \"forward\" whose targets only rise or only "
                           "fall, found none; state + and - in place of forward and reverse"));
-    const double target = row.target * map->target_unit;
+    const double target = row.target * map.target_unit;
     if (auto ok = runs.add({row.cycle, direction_of(row.way, listed), target,
-                            map->deviation(row.value, target), row.line});
+                            map.deviation(row.value, target), row.line});
         !ok)
       return fail(ok.error());
   }

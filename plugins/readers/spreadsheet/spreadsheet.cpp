@@ -136,9 +136,8 @@ Expected<std::vector<Row>> first_rows(std::string_view bytes, std::size_t most) 
 bool recognises(std::string_view head) { return head.starts_with("PK\x03\x04"); }
 
 Expected<Observations> read(const ReadInput& input) {
-  const auto book = is_ods(input.bytes) ? read_ods(input.bytes) : read_xlsx(input.bytes);
-  if (!book) return fail(book.error());
-  NONIO_TRY(const Table table, chosen(*book, input));
+  NONIO_TRY(const auto book, is_ods(input.bytes) ? read_ods(input.bytes) : read_xlsx(input.bytes));
+  NONIO_TRY(const Table table, chosen(book, input));
   const auto& rows = table.sheet->rows();
   std::string text;
   std::size_t width = rows[table.first].size();

@@ -3,7 +3,6 @@
 // (styles).
 #include <cstdlib>
 #include <map>
-#include <set>
 
 #include "archive.h"
 #include "sheet.h"
@@ -180,9 +179,8 @@ class SheetReader {
 
   Expected<void> end() {
     if (is_wrong_) return fail("sheet \"" + sheet_.name + "\": a cell has no place");
-    auto put = text();
-    if (!put) return fail(put.error());
-    return sheet_.put(at_row_, column_++, std::move(*put));
+    NONIO_TRY(auto put, text());
+    return sheet_.put(at_row_, column_++, std::move(put));
   }
 
   Expected<std::string> text() const {

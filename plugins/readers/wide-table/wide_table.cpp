@@ -311,14 +311,13 @@ Expected<void> add_rows(const Map& map, const Table& table, int listed, Runs& ru
 }
 
 Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
-  const auto all = map_of(input.options, axis.rotary);
-  if (!all) return fail(all.error());
-  Numbers numbers(all->separator != ',');
+  NONIO_TRY(const auto all, map_of(input.options, axis.rotary));
+  Numbers numbers(all.separator != ',');
   Runs runs(input, axis, axis.rotary);
   int listed = 0;
   Table last;
-  for (const RowRange& rows : all->tables) {
-    const Map map = all->of(rows);
+  for (const RowRange& rows : all.tables) {
+    const Map map = all.of(rows);
     NONIO_TRY(auto table, TableReader(map, numbers).read(input.bytes));
     const int sense = sense_of(table.targets);
     if (sense == 0)
@@ -331,7 +330,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
     last = std::move(table);
   }
   auto obs = runs.finish();
-  if (obs && all->means()) note_means(*all, last, axis.rotary, *obs);
+  if (obs && all.means()) note_means(all, last, axis.rotary, *obs);
   return obs;
 }
 

@@ -19,8 +19,8 @@
 #include "laboratory/store/entry.h"
 #include "platform/storage/backup.h"
 #include "platform/storage/digest.h"
+#include "platform/storage/files.h"
 #include "platform/storage/pack.h"
-#include "platform/storage/scratch_folder.h"
 #include "platform/storage/tar.h"
 
 namespace {

@@ -5,8 +5,6 @@
 
 #include <string>
 
-#include "certificates/password.h"
-
 namespace nonio::certificates {
 namespace {
 

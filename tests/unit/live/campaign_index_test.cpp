@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "platform/storage/scratch_folder.h"
+#include "platform/storage/files.h"
 
 namespace nonio::live {
 namespace {

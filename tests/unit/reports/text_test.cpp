@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/reports/text.h"
 
-#include "characters.h"
 #include "fixtures.h"
-#include "font_outlines.h"
+#include "font_reader.h"
 #include "font_subset.h"
 #include "nonio/reports/document.h"
 #include "nonio/reports/wording.h"

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "fixtures.h"
-#include "font_outlines.h"
+#include "font_reader.h"
 #include "nonio/reports/document.h"
 
 namespace {

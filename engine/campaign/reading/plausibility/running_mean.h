@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-
 namespace nonio::reading {
 
 /// Mean from which values can be removed, for comparison of each pass with all others in linear

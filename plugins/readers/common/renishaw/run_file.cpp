@@ -231,19 +231,17 @@ class Parser {
     const auto runs = block(blocks_, "RUNS"), in = block(blocks_, "DEVIATIONS");
     if (!runs) return fail(runs.error());
     if (!in) return fail(in.error());
-    const auto count = count_of(**runs, "Run-count", most_runs);
-    if (!count) return fail(count.error());
-    file_.run_count = *count;
+    NONIO_TRY(const auto count, count_of(**runs, "Run-count", most_runs));
+    file_.run_count = count;
     const std::size_t n = file_.targets.size();
-    const std::size_t wanted = n * *count;
+    const std::size_t wanted = n * count;
     std::vector<FileLine> lines = (*in)->lines;
     if (!lines.empty() && same_letters(split_key(lines[0].text).key, "Run Target Data"))
       lines.erase(lines.begin());
     if (lines.size() != wanted)
       return fail(at_line((*in)->line, "expected " + std::to_string(wanted) + " rows (" +
-                                           std::to_string(*count) + " runs of " +
-                                           std::to_string(n) + " targets), found " +
-                                           std::to_string(lines.size())));
+                                           std::to_string(count) + " runs of " + std::to_string(n) +
+                                           " targets), found " + std::to_string(lines.size())));
     std::vector<std::uint64_t> seen(wanted, 0);
     for (const FileLine& line : lines)
       if (auto ok = row(line, seen); !ok) return ok;
@@ -307,14 +305,13 @@ class Parser {
                                                                 : nullptr;
       const bool material = same_letters(key.substr(0, 8), "Mat temp");
       if (to == nullptr && !material) continue;
-      const auto values = pair(line, value);
-      if (!values) return fail(values.error());
+      NONIO_TRY(const auto values, pair(line, value));
       if (to != nullptr)
-        *to = *values;
-      else if (values->start == -10.0 && values->end == -10.0)
+        *to = values;
+      else if (values.start == -10.0 && values.end == -10.0)
         ++e.unconnected;
       else
-        e.material.push_back(*values);
+        e.material.push_back(values);
     }
     file_.environment = std::move(e);
     return {};

@@ -123,16 +123,15 @@ struct Typed {
 }  // namespace
 
 Expected<void> add_runs(const RunFile& file, const Units& units, Runs& runs) {
-  const auto passes = passes_of(file);
-  if (!passes) return fail(passes.error());
-  NONIO_TRY(const auto both, bidirectional(*passes));
+  NONIO_TRY(const auto passes, passes_of(file));
+  NONIO_TRY(const auto both, bidirectional(passes));
   std::vector<Remark>& notes = runs.observations().notes;
   const bool all_zero =
-      std::all_of(passes->begin(), passes->end(), [](const Pass& p) { return p.zero || !p.taken; });
+      std::all_of(passes.begin(), passes.end(), [](const Pass& p) { return p.zero || !p.taken; });
   if (all_zero)
     return fail("expected readings, found runs that were not taken or are 0 everywhere");
-  for (std::size_t i = 0; i < passes->size(); ++i) {
-    const Pass& pass = (*passes)[i];
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    const Pass& pass = passes[i];
     if (!pass.taken) notes.push_back(run_note("renishaw.run-not-taken", i + 1));
     if (pass.zero) notes.push_back(run_note("renishaw.run-zero", i + 1));
     for (const RunFile::Row* row : pass.rows) {
@@ -147,7 +146,7 @@ Expected<void> add_runs(const RunFile& file, const Units& units, Runs& runs) {
   }
   // The flag is 0 for alternating directions, 1 for one direction. A contradiction is only a
   // warning, because few files with this flag are known.
-  if (file.flags.size() > 1 && passes->size() > 1 && (file.flags[1] == 0) != both)
+  if (file.flags.size() > 1 && passes.size() > 1 && (file.flags[1] == 0) != both)
     notes.push_back({"renishaw.flag-disagrees"});
   return {};
 }

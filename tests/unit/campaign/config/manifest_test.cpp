@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "campaign/config/secret_files.h"
+#include "campaign/config/site_files.h"
 #include "methods.h"
 
 namespace nonio::manifest_test {

@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "platform/storage/digest.h"
-#include "platform/storage/real_folder.h"
 
 namespace nonio::files_test {
 namespace fs = std::filesystem;

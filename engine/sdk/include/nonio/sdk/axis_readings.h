@@ -93,13 +93,12 @@ std::vector<double> targets_of(const AxisReadings& r);
 /// moved, and other rows are 0. Error: that of `readings_of`.
 template <class... Values>
 Expected<Effect::Columns> columns_of(const Observations& o, const Axis& axis, Values... values) {
-  const auto r = readings_of(o, axis);
-  if (!r) return fail(r.error());
+  NONIO_TRY(const auto r, readings_of(o, axis));
   Effect::Columns columns(sizeof...(values), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
-    if (!r->moved[i]) continue;
+    if (!r.moved[i]) continue;
     std::size_t k = 0;
-    ((columns[k++][i] = values(*r, i)), ...);
+    ((columns[k++][i] = values(r, i)), ...);
   }
   return columns;
 }

@@ -213,9 +213,8 @@ inline Expected<TableMap> table_map_of(const Settings& options, bool rotary) {
   map.factor = options.number("factor", 1.0);
   if (map.factor == 0.0) return fail(of_option("factor", "expected a number other than 0"));
   map.offset = options.number("offset") * map.value_unit;
-  auto tables = tables_of(options);
-  if (!tables) return fail(tables.error());
-  map.tables = std::move(*tables);
+  NONIO_TRY(auto tables, tables_of(options));
+  map.tables = std::move(tables);
   return map;
 }
 

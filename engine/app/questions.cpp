@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "password_input.h"
+#include "questions.h"
 
 #include <termios.h>
 #include <unistd.h>
 
 #include <iostream>
-
-#include "questions.h"
 
 namespace nonio::app {
 
