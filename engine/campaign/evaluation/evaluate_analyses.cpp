@@ -17,13 +17,14 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// Raises each U to at least the CMC over `length` (m) or `angle` (rad). Does nothing without accreditation. Source:
+/// Raises each U to at least the CMC over `length` (m) or the measured range. Does nothing without accreditation. Source:
 /// the policy of ILAC-P14; its text was not available.
-void apply_cmc(const Laboratory& laboratory, double length, double angle, Evaluation& e) {
+void apply_cmc(const Laboratory& laboratory, double length, const math::Ranges& measured,
+               Evaluation& e) {
   if (laboratory.accreditation.empty() || !laboratory.cmc.stated()) return;
   std::string raised;
   const auto raise = [&](double& U, Quantity q) {
-    const double least = math::least_U(laboratory, q, length, angle);
+    const double least = math::least_U(laboratory, q, length, measured);
     const bool below = U < least;
     if (below) U = least;
     return below;
@@ -104,10 +105,11 @@ std::optional<Results::Analysed> analysed_with(
   for (const Measurement& m : work.campaign().measurements)
     if (m.id == id || std::find(uses.begin(), uses.end(), m.id) != uses.end())
       note_reasons_missing(m, *evaluation);
-  apply_cmc(
-      work.campaign().laboratory,
-      evaluation->budget ? evaluation->budget->length : range_of(work.read, measurement, false),
-      range_of(work.read, measurement, true), *evaluation);
+  const math::Ranges measured{range_of(work.read, measurement, false),
+                              range_of(work.read, measurement, true)};
+  apply_cmc(work.campaign().laboratory,
+            evaluation->budget ? evaluation->budget->length : measured.length, measured,
+            *evaluation);
   for (Finding& f : evaluation->findings) f.measurement = id;
   if (!analysis.states_followed) follow_all(analysis.info.name, measurement, *evaluation);
   return Results::Analysed{analysis.info.name, analysis.info.version, id, std::move(*evaluation)};

@@ -3,11 +3,10 @@
 
 #include <utility>
 
+#include "common/constants.h"
 #include "nonio/math/axis_test.h"
 
 namespace nonio::math {
-
-inline double squared(double x) { return x * x; }
 
 /// The last result is kept, because analyses, uncertainties and the table of each control need it.
 /// Results of long tests are not kept, to save memory.

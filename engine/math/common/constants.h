@@ -17,4 +17,6 @@ inline constexpr double of_full_range = std::numbers::inv_sqrt3 / 2.0,
 inline constexpr double largest_coordinate = 1e6;
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
+constexpr double squared(double x) { return x * x; }
+
 }  // namespace nonio::math

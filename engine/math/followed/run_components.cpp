@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "common/constants.h"
 #include "dense.h"
 #include "nonio/math/statistics.h"
 
@@ -29,8 +30,6 @@ std::vector<PassExtent> pass_extents(const AxisTest& test, const PassModel& pass
   }
   return out;
 }
-
-double squared(double x) { return x * x; }
 
 /// `noise`: contribution of single readings to the variance of the values.
 RunPart run_part(const std::vector<double>& values, double noise) {

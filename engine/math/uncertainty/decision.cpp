@@ -24,7 +24,8 @@ Decision decide(double value, double U, double tolerance, std::string_view rule,
   return Decision::cannot_be_decided;
 }
 
-double least_U(const Laboratory& laboratory, Quantity quantity, double length, double angle) {
+double least_U(const Laboratory& laboratory, Quantity quantity, double length,
+               const Ranges& measured) {
   if (laboratory.accreditation.empty()) return 0.0;
   const Cmc& cmc = laboratory.cmc;
   switch (quantity) {
@@ -37,9 +38,11 @@ double least_U(const Laboratory& laboratory, Quantity quantity, double length, d
     case Quantity::number:  // components of a direction have the uncertainty of an angle
       return cmc.angle.value_or(0.0);
     case Quantity::deviation_per_length:
-      return length > 0.0 ? least_U(laboratory, Quantity::deviation, length, angle) / length : 0.0;
+      return measured.length > 0.0
+                 ? cmc.fixed.value_or(0.0) / measured.length + cmc.per_length.value_or(0.0)
+                 : 0.0;
     case Quantity::deviation_per_angle:
-      return angle > 0.0 ? cmc.angle.value_or(0.0) / angle : 0.0;
+      return measured.angle > 0.0 ? cmc.angle.value_or(0.0) / measured.angle : 0.0;
     default:
       return 0.0;
   }

@@ -173,7 +173,8 @@ class Truth(unittest.TestCase):
                 continue
             value, U, unit = printed[key]
             self.assertEqual(unit, v["unit"], key)
-            self.assertLessEqual(abs(float(value) - v["value"]), 0.51 * 10 ** -len(value.partition(".")[2]), (key, value, v))
+            decimals = len(value.partition(".")[2]) or min(0, 1 - math.floor(math.log10(v["U"])))
+            self.assertLessEqual(abs(float(value) - v["value"]), 0.51 * 10.0 ** -decimals, (key, value, v))
             self.assertLessEqual(abs(float(U) - v["U"]), 0.051 * v["U"] + 1e-12, (key, U, v))
 
     def check_findings(self, results):

@@ -18,10 +18,16 @@ Decision decide(double value, double U, double tolerance, std::string_view rule 
 /// Guard band of `rule` for U with coverage factor k.
 double guard_band(double U, std::string_view rule, double k);
 
-/// Smallest U (k = 2) that the accreditation covers over `length` (m) or `angle` (rad), SI, of a
-/// slope that of an end divided by the range; 0 without accreditation
-/// or if [laboratory.cmc] states nothing for this quantity. An analysis that decides itself uses at
-/// least this U, because the result gets it too.
-double least_U(const Laboratory& laboratory, Quantity quantity, double length, double angle = 0.0);
+/// Largest range of positions of a linear and of a rotary axis, m and rad; 0: none was measured.
+struct Ranges {
+  double length = 0.0, angle = 0.0;
+};
+
+/// Smallest U (k = 2) that the accreditation covers over `length` (m), SI, of a slope that of the
+/// ends divided by the measured range; 0 without accreditation or if [laboratory.cmc] states nothing
+/// for this quantity. An analysis that decides itself uses at least this U, because the result gets
+/// it too.
+double least_U(const Laboratory& laboratory, Quantity quantity, double length,
+               const Ranges& measured = {});
 
 }  // namespace nonio::math
