@@ -46,6 +46,8 @@ class Axe(live_browser.LivePage):
             for width, height, scale in SIZES:
                 self.size(width, height, scale)
                 self.wait(lambda: self.js("innerWidth") == width)
+                # Values are pale while they are computed anew.
+                self.wait(lambda: self.js("document.querySelector('#now.old, #effects-list.old') === null"))
                 with self.subTest(f"{where} {language} {scheme} {width} px"):
                     self.assertEqual("", "\n".join(self.d.execute_async_script(RUN)))
                     self.assertEqual(language, self.js("document.documentElement.lang"))
