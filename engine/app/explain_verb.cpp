@@ -85,6 +85,8 @@ class ExplainTogether {
     const modelling::ModelWords words(context.templates,
                                       common_.json ? "en" : context.site.language);
     const auto document = modelling::together_json(*found, words, seed_, errors_);
+    if (!options_.page.empty() && found->together.empty())
+      return complain("--page shows what several campaigns measured; no axis has two campaigns");
     if (!options_.page.empty())
       if (const auto put = write_page(found->together, words); !put)
         return complain(text_of(put.error()));

@@ -145,7 +145,9 @@ Axes common_parts(const std::vector<const reading::ReadCampaign*>& campaigns,
     for (PartModel& part : *parts) {
       if (part.part.kind == model::Part::Kind::axis)
         put_axis(out, kinds.of(campaign.machine), *read, part, all);
-      else if (part.part.kind == model::Part::Kind::course || !part.unfit.empty() ||
+      else if (!part.unfit.empty())
+        all.left_out.push_back(campaign.id + " " + part.part.name + " (" + part.unfit + ")");
+      else if (part.part.kind == model::Part::Kind::course ||
                part.part.table.size() > most_readings)
         all.left_out.push_back(campaign.id + " " + part.part.name);
       else
@@ -457,10 +459,15 @@ Expected<FleetExplanation> explain_together(
     }
     out.together.push_back(std::move(t));
   }
-  for (Alone& one : out.alone) {
-    NONIO_TRY(auto explained, explain_part(one.part, seed));
-    one.plans = std::move(explained.plans);
-  }
+  std::erase_if(out.alone, [&](Alone& one) {
+    auto explained = explain_part(one.part, seed);
+    if (explained)
+      one.plans = std::move(explained->plans);
+    else
+      out.left_out.push_back(one.campaign + " " + one.part.part.name + " (" +
+                             explained.error().message + ")");
+    return !explained;
+  });
   return out;
 }
 

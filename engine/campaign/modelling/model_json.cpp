@@ -193,8 +193,8 @@ void put_after_table(storage::Json& json, const PartModel& part, const model::Fi
 
 /// Returns the warnings about a fit as sentences: values below their uncertainty, gains that are
 /// too large, parameters that are not identifiable, positions or orders that are not stated,
-/// interpolated temperatures, channels that are not used, interrupted displacements, time constants of thermal tests, and noise that is not independent or
-/// not constant.
+/// interpolated temperatures, channels that are not used, interrupted displacements, time constants
+/// of thermal tests, and noise that is not independent or not constant.
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
                                      const Campaign& campaign, const ModelWords& words) {
   std::vector<std::string> out;

@@ -439,7 +439,7 @@ Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaig
 void compare_with_measured(const reading::ReadCampaign& read, OutputResult& result) {
   const auto& measurements = read.manifest->campaign.measurements;
   std::erase_if(result.findings, [&](const Finding& f) {
-    return f.id == "table.no-gain" &&
+    return (f.id == "table.no-gain" || f.id == "table.worse-mean") &&
            std::any_of(measurements.begin(), measurements.end(), [&](const Measurement& m) {
              return m.id == f.measurement && m.kind == "axis";
            });

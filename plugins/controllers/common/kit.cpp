@@ -43,7 +43,7 @@ math::GridRule rule_of(const AxisJob& job, const ControllerInput& input, const W
   if (!rule.turn) rule.first = job.position_setting("first");
   rule.power_of_two = w.power_of_two;
   if (anchored(t)) {
-    rule.anchor = rule.turn ? 0.0 : reference;
+    rule.anchor = reference;
     if (t.entry == Entry::increment) rule.most = std::max<std::size_t>(rule.most, 3) - 1;
   }
   return rule;
@@ -87,16 +87,17 @@ Expected<void> place_points(Sheet& s, const Writer& w) {
     return fail("axis " + s.job.axis + ": this control has its points every " +
                 with_unit(s.job, w.fixed_step, 4) + ", step_mm has no effect");
   const math::GridRule rule = rule_of(s.job, s.input, w, t, s.reference);
-  NONIO_TRY(s.grid, math::choose_grid(wanted(s.job, w), rule));
+  const std::vector<double> targets = wanted(s.job, w);
+  NONIO_TRY(s.grid, math::choose_grid(targets, rule));
   if (t.entry == Entry::increment && !rule.turn) surround(s.grid, s.reference);
   constexpr double rounding = 1e-9;
   if (w.within_turn && s.job.rotary &&
-      (s.grid.first < -rounding || wanted(s.job, w).back() > full_turn + rounding))
+      (s.grid.first < -rounding || targets.back() > full_turn + rounding))
     return fail("axis " + s.job.axis +
-                ": this control uses entries of rotary axes from 0 to 360 "
-                "deg only, and these readings are from " +
-                with_unit(s.job, wanted(s.job, w).front(), 4) + " to " +
-                with_unit(s.job, wanted(s.job, w).back(), 4) +
+                ": this control uses entries of rotary axes from 0 to 360 deg only, and these "
+                "readings are from " +
+                with_unit(s.job, targets.front(), 4) + " to " +
+                with_unit(s.job, targets.back(), 4) +
                 ": measure, or state, positions from 0 to 360 deg");
   s.position.clear();
   for (std::size_t i = 0; i < s.grid.points; ++i) s.position.push_back(s.grid.position(i));
@@ -217,7 +218,7 @@ Expected<void> set_reference(Sheet& s, OutputResult& result) {
             "is 0: reference_" +
             std::string(s.job.unit()) + " must be 0, found " + with_unit(s.job, *told, 4),
         s.job.axis + ".reference_" + std::string(s.job.unit()));
-  s.reference = s.job.turn ? 0.0 : told.value_or(0.0);
+  s.reference = told.value_or(0.0);
   if (!told) result.notes.push_back(remark(s.job, "table.reference-at-zero"));
   return {};
 }

@@ -173,6 +173,9 @@ class Together(unittest.TestCase):
             shutil.copytree(ROOT / "samples" / "site" / sample, self.site / sample)
         answer = self.answer()
         self.assertEqual(answer["parts"], [])
+        page = self.site.parent / "page.html"
+        self.assertIn("no axis has two campaigns", explain(self.site, "--page", page, status=2).stderr)
+        self.assertFalse(page.exists())
         self.assertEqual({n["campaign"] for n in answer["next"]}, {"04-drift-parallel", "05-drift-wedge"})
 
     def test_nothing_is_found_where_there_is_nothing(self):
