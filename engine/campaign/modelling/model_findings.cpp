@@ -190,8 +190,7 @@ class Next {
     const auto good = std::find_if(e_.plans.begin(), e_.plans.end(),
                                    [](const model::Plan& p) { return p.separates(); });
     if (good != e_.plans.end()) return out_.push_back(plan_finding(*good));
-    if (part_.part.kind == model::Part::Kind::course)
-      return out_.push_back(plan_finding(e_.plans.front()));
+    if (part_.part.kind == model::Part::Kind::course) return;
     const auto [low, high] = std::minmax_element(part_.part.along.begin(), part_.part.along.end());
     add("wider",
         {{"from", *low, part_.position()},
