@@ -147,12 +147,15 @@ Axes common_parts(const std::vector<const reading::ReadCampaign*>& campaigns,
         put_axis(out, kinds.of(campaign.machine), *read, part, all);
       else if (!part.unfit.empty())
         all.left_out.push_back(campaign.id + " " + part.part.name + " (" + part.unfit + ")");
-      else if (part.part.kind == model::Part::Kind::course ||
+      else if (part.part.kind != model::Part::Kind::course &&
                part.part.table.size() > most_readings)
         all.left_out.push_back(campaign.id + " " + part.part.name);
       else
         all.alone.push_back({campaign.id, std::move(part)});
     }
+    if (!all.alone.empty() && all.alone.back().campaign == campaign.id)
+      for (const Measurement& m : campaign.measurements)
+        if (m.order == "as-listed") all.alone.back().ordered.push_back(m.id);
   }
   for (auto it = out.begin(); it != out.end();) {
     auto& list = it->second;
@@ -438,6 +441,23 @@ bool add_named_causes(Together& t, std::uint64_t seed) {
   return true;
 }
 
+/// Keeps of the explanation what is shown of a part that is explained on its own.
+void keep_explanation(Alone& one, model::Explanation explained) {
+  one.plans = std::move(explained.plans);
+  const auto& lines = one.part.part.table.lines;
+  if (std::none_of(lines.begin(), lines.end(), [](const auto& l) { return !l.body.empty(); }))
+    return;
+  const model::Fit& fit = explained.comparison.fit;
+  std::vector<model::Term> terms = fit.terms;
+  for (const model::Candidate& c : explained.candidates)
+    if (std::find(explained.together.begin(), explained.together.end(), c.term.name()) !=
+        explained.together.end())
+      terms.push_back(c.term);
+  const auto found = model::fit(one.part.part.table, terms, fit.weight, fit.noise);
+  one.residual = found ? found->residual : fit.residual;
+  one.noise = found ? found->s : fit.s;
+}
+
 }  // namespace
 
 std::vector<std::string> each_once(const std::vector<std::string>& names) {
@@ -460,7 +480,8 @@ Expected<FleetExplanation> explain_together(
   auto parts = common_parts(ordered, trouble, out);
   if (!trouble) return fail(trouble.error());
   if (parts.empty() && out.alone.empty())
-    return fail("expected readings of axes, lines in space, circles or parts; found none");
+    return fail(
+        "expected readings of axes, lines in space, circles, parts or displacements; found none");
   const bool one_kind =
       parts.empty() || parts.begin()->first.machine == std::prev(parts.end())->first.machine;
   for (auto& [key, list] : parts) {
@@ -496,7 +517,7 @@ Expected<FleetExplanation> explain_together(
   std::erase_if(out.alone, [&](Alone& one) {
     auto explained = explain_part(one.part, seed);
     if (explained)
-      one.plans = std::move(explained->plans);
+      keep_explanation(one, std::move(*explained));
     else
       out.left_out.push_back(one.campaign + " " + one.part.part.name + " (" +
                              explained.error().message + ")");

@@ -88,7 +88,6 @@ class Reader {
 
   Expected<JointReadings> run() {
     list_places();
-    list_blocks();
     for (const Member& member : members_) {
       auto read = of_member(member);
       if (!read) {
@@ -97,6 +96,7 @@ class Reader {
       }
       out_.members.push_back(std::move(*read));
     }
+    list_blocks();
     out_.offsets = offsets_of_passes();
     for (std::size_t m = 0; m < members_.size(); ++m)
       if (auto put = put_columns(members_[m], out_.offsets, grounds_[m], out_.members[m]); !put)
@@ -122,6 +122,15 @@ class Reader {
       places_[i] += (high - low) * static_cast<double>(i) / static_cast<double>(most - 1);
   }
 
+  /// Standard uncertainty of the RMS of an effect that all members have.
+  double u_of_size() const {
+    double sum = 0.0;
+    for (std::size_t m = 0; m < members_.size(); ++m)
+      sum += static_cast<double>(members_[m].part->table.size()) /
+             (out_.members[m].s * out_.members[m].s);
+    return 1.0 / std::sqrt(sum);
+  }
+
   /// Effects that no member has in its model, with the shapes of the member with the most readings.
   void list_blocks() {
     std::map<std::string, std::pair<const Term*, const Member*>> all;
@@ -136,7 +145,7 @@ class Reader {
       }
     std::vector<Term> terms;
     for (const std::string& name : order) terms.push_back(*all[name].first);
-    set_weights(terms);
+    set_weights(terms, u_of_size());
     for (const Term& one : terms) {
       const std::string name = one.of_all();
       const auto [term, member] = all[name];

@@ -266,6 +266,37 @@ class Heat(VerbTest):
             self.assertEqual(answer["sensors"]["no_thermometer_for"], "spindle")
             self.assertTrue(any("place one" in says for says in answer["next"]), answer["next"])
 
+    def test_every_confused_pair_has_a_further_test_or_is_said_to_have_none(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            rows = record(seed, [3.0])
+            folder = self.campaign("all", rows)
+            answer = self.json("explain", folder)
+            named = {answer["verdict"]["effect"], *answer["significant"]}
+            confused = {(c["effect"], a) for c in answer["candidates"] if c["effect"] in named for a in c["aliases"]}
+            self.assertEqual({tuple(p["separates"]) for p in answer["plans"]}, confused)
+            whole = rows[-1][0]
+            for plan in answer["plans"]:
+                if plan["power"] < 4:
+                    self.assertEqual((plan["plan"], plan["readings"]), ("none", 0))
+                    continue
+                self.assertEqual((plan["plan"], plan["of"]), ("other-speeds", "spindle"))
+                self.assertAlmostEqual(plan["readings"], plan["duration_s"] / STEP, delta=2)
+                self.assertLessEqual(plan["duration_s"], 2 * whole + 60)
+                self.assertIn(f"every {plan['every_s'] / 60:.0f} min", plan["says"])
+            # Without a speed that could be chosen, no test can be planned.
+            text = table([row[:-1] for row in rows], ("z",)).replace(",spindle_rpm", "")
+            bare = self.write("bare", MANIFEST.format(id="bare", more=""), **{"warm.csv": text})
+            other = self.json("explain", bare)
+            self.assertEqual({p["plan"] for p in other["plans"]} - {"no-source"}, set())
+            # Several campaigns: one list of all pairs.
+            both = self.json("explain", folder, bare)
+            self.assertEqual(both["alone"], ["all warm/z", "bare warm/z"])
+            self.assertNotIn("left_out", both)
+            listed = [(n["campaign"], n["plan"], *n["separates"]) for n in both["next"]]
+            expected = [(a["campaign"], p["plan"], *p["separates"]) for a in (answer, other) for p in a["plans"]]
+            self.assertCountEqual(listed, expected)
+
     def test_what_is_known_of_channels(self):
         rows, air = record(21, [2.0]), '[[measurement.channel]]\nname = "hall"\nrole = "air"\n'
         names = lambda folder: {c["effect"] for c in self.json("explain", folder)["candidates"]}

@@ -196,7 +196,7 @@ class Together(unittest.TestCase):
         answer = self.answer()
         self.assertEqual(answer["parts"], [])
         page = self.site.parent / "page.html"
-        self.assertIn("no axis has two campaigns", explain(self.site, "--page", page, status=2).stderr)
+        self.assertIn("there are none", explain(self.site, "--page", page, status=2).stderr)
         self.assertFalse(page.exists())
         self.assertEqual({n["campaign"] for n in answer["next"]}, {"04-drift-parallel", "05-drift-wedge"})
 
