@@ -184,7 +184,7 @@ def true_words(said):
 
 def story(nonio, count, seed, hide):
     sets = [Real(name) for name in SETS]
-    tallies, verdicts, printed = collections.defaultdict(list), collections.Counter(), []
+    tallies, verdicts = collections.defaultdict(list), collections.Counter()
     with tempfile.TemporaryDirectory() as scratch:
         for s in range(seed, seed + count):
             rng = random.Random(s)
@@ -197,19 +197,19 @@ def story(nonio, count, seed, hide):
             right = truth in names or bool(names) and truth in first["aliases"]
             wrong = [n for n in names if n != truth] if not right else [n for n in names[1:] if n != truth]
             verdicts[said["verdict"]["kind"]] += 1
-            printed.append(said["false_alarm_rate"])
             for key in ("all", real.name, hidden or "-"):
-                tallies[key].append((right if hide else true_words(said), bool(wrong)))
+                tallies[key].append((right if hide else true_words(said), bool(wrong),
+                                     said["verdict"]["kind"] != "nothing", said["false_alarm_rate"]))
             if wrong:
                 print(f"  seed {s}: {real.name}, hidden {truth}, named {', '.join(names)}", file=sys.stderr)
     print(f"seeds {seed} .. {seed + count - 1}; verdicts {dict(verdicts)}")
-    alarms = count - verdicts["nothing"]
-    if not hide:
-        print(f"  alarms found {share(alarms, count)}, printed {100 * statistics.fmean(printed):.1f} %")
     for key, all_of in tallies.items():
-        print(f"  {key:30} {'named' if hide else 'true'} {share(sum(r for r, _ in all_of), len(all_of))}   "
-              f"wrong names {share(sum(w for _, w in all_of), len(all_of))}")
-    return 100 * alarms / count
+        right, wrong, alarms, printed = zip(*all_of)
+        rates = "" if hide else f"   alarms {share(sum(alarms), len(alarms))}, printed {100 * statistics.fmean(printed):.1f} %"
+        print(f"  {key:30} {'named' if hide else 'true'} {share(sum(right), len(right))}   "
+              f"wrong names {share(sum(wrong), len(wrong))}{rates}")
+    right, _, alarms, _ = zip(*tallies["all"])
+    return 100 * statistics.fmean(right if hide else alarms)
 
 
 def main():
@@ -219,11 +219,14 @@ def main():
     parser.add_argument("--complete", type=int, metavar="COUNT")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--most", type=float, metavar="PERCENT", help="of --complete: status 1 beyond so many alarms")
+    parser.add_argument("--least", type=float, metavar="PERCENT", help="of --hidden: status 1 if fewer are named")
     parser.add_argument("--page", type=pathlib.Path, help="instead: whether this page states what is found")
     args = parser.parse_args()
     if args.hidden or args.complete:
-        alarms = story(args.nonio, args.hidden or args.complete, args.seed, bool(args.hidden))
-        return 1 if args.complete and args.most is not None and alarms > args.most else 0
+        percent = story(args.nonio, args.hidden or args.complete, args.seed, bool(args.hidden))
+        if args.hidden:
+            return 1 if args.least is not None and percent < args.least else 0
+        return 1 if args.most is not None and percent > args.most else 0
     return 0 if read_all(args.nonio, args.page) else 1
 
 

@@ -262,6 +262,37 @@ std::string sentence_of(const model::JointEffect& e, const Together& t,
                            {"of-high", place_text(t, high, say)}});
 }
 
+/// U of the difference of two scales with what all readings of a campaign have in common; infinite
+/// if that is not known, nullopt if the effect has no scale that differs.
+std::optional<double> U_of_difference(const model::JointEffect& e, const Together& t) {
+  if (e.holds == Holds::shared || !e.effect.starts_with("scale:")) return std::nullopt;
+  const auto [low, high] = extremes(e);
+  if (low == high || e.groups[low].front().quantity != Quantity::deviation_per_length)
+    return std::nullopt;
+  double variance = 0.0;
+  for (const std::size_t g : {low, high}) {
+    const std::size_t member = e.holds == Holds::own ? g : e.after - (g == 0 ? 1 : 0);
+    const double common = t.u_scale[member].value_or(INFINITY), own = e.groups[g].front().u;
+    variance += common * common + own * own;
+  }
+  return 2.0 * std::sqrt(variance);
+}
+
+/// The sentence, with what instrument, misalignment and temperatures permit to say of a difference.
+std::string qualified(const model::JointEffect& e, const Together& t,
+                      const config::TerminalWords& say) {
+  const std::string sentence = sentence_of(e, t, say);
+  const auto U = U_of_difference(e, t);
+  if (!U) return sentence;
+  const auto [low, high] = extremes(e);
+  if (!std::isfinite(*U)) return sentence + " " + say("joint.scale-unknown");
+  if (e.groups[high].front().value - e.groups[low].front().value > *U) return sentence;
+  const Quantity q = Quantity::deviation_per_length;
+  return sentence + " " +
+         say("joint.scale-within", {{"U", say.number(short_text(printed(*U, q), 2)) + " " +
+                                              std::string(unit_of(q).symbol)}});
+}
+
 std::string sentence_of(const Together& t, const config::TerminalWords& say) {
   const model::JointExplanation& x = t.explanation;
   const Quantity q = t.deviation();
@@ -316,7 +347,9 @@ Json effect_json(const model::JointEffect& e, const Together& t, const ModelWord
     }
   }
   json["aliases"] = e.aliases;
-  json["says"] = sentence_of(e, t, say);
+  if (const auto U = U_of_difference(e, t); U && std::isfinite(*U))
+    storage::put(json, "U_difference", *U, Quantity::deviation_per_length);
+  json["says"] = qualified(e, t, say);
   return json;
 }
 
@@ -458,6 +491,7 @@ Expected<FleetExplanation> explain_together(
       const Campaign& campaign = one.read->manifest->campaign;
       t.campaigns.push_back(campaign.id), t.dates.push_back(campaign.date);
       t.adjustments.push_back(one.adjustment), t.machines.push_back(name_of(campaign.machine));
+      t.u_scale.push_back(common_scale_uncertainty(one.part.part, campaign, key.axis));
       for (const std::string& effect : one.part.names())
         if (std::find(t.effects.begin(), t.effects.end(), effect) == t.effects.end())
           t.effects.push_back(effect);

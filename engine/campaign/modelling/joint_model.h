@@ -20,6 +20,8 @@ struct Together {
   std::vector<std::string> campaigns, dates, adjustments, machines;
   std::vector<PartModel> parts;
   std::vector<std::string> effects;
+  /// For each member, the standard uncertainty of a scale that its readings have in common.
+  std::vector<std::optional<double>> u_scale;
   model::JointExplanation explanation;
   std::vector<std::shared_ptr<const void>> keeps{};  ///< owners of effects made from library causes
 

@@ -7,6 +7,7 @@
 
 #include "data/pass_zeros.h"
 #include "nonio/math/distributions.h"
+#include "scatter.h"
 #include "verdict.h"
 
 namespace nonio::model {
@@ -94,6 +95,19 @@ bool PassZeros::explains_zeros(const Workbench::State& others) const {
   return math::f_upper(math::test_ratio(fall / k, after.squares() / dof), k, dof) < by_chance;
 }
 
+/// Returns the share of these orders whose zeros are in an order, so that they are no noise, or in
+/// which one run scatters more than the others.
+double PassZeros::share_with_order(const MatrixXd& orders) const {
+  double alarms = 0.0;
+  for (const auto& order : orders.colwise()) {
+    const std::vector<double> e(order.begin(), order.end());
+    if (!ZerosOfPasses(f_.part, f_.repeats, f_.weight, e).unordered() ||
+        wild_run(f_.part.table, f_.repeats, e, f_.weight, f_.noise))
+      ++alarms;
+  }
+  return alarms / static_cast<double>(orders.cols());
+}
+
 /// Compares the passes in their own order with passes in other orders: which effects of the best
 /// explanation the order does not show, and how often other orders would show some effect.
 void PassZeros::compare_orders() {
@@ -113,15 +127,16 @@ void PassZeros::compare_orders() {
   }
   if (in_time.empty() ? f_.of_best.fit.noise.independent() : explains_zeros(others)) return;
   const Workbench& bench = *f_.bench;
+  const MatrixXd orders = in_other_orders(f_.of_model.fit.residual);
   const std::vector<double> least =
-      least_p(bench, others,
-              drawn(bench, others, bench.white()(in_other_orders(f_.of_model.fit.residual))), true);
+      least_p(bench, others, drawn(bench, others, bench.white()(orders)), true);
   const auto share = [&](const auto& which) {
     return static_cast<double>(std::count_if(least.begin(), least.end(), which)) /
            static_cast<double>(least.size());
   };
   alarms_ =
       std::min(as_often, share([&](double p) { return f_.chance.corrected(p) < named_below; }));
+  if (f_.noise.zero == Noise::Zero::of_pass) alarms_ = std::max(alarms_, share_with_order(orders));
   const Workbench::Gains gains = bench.gains(others);
   double own = 1.0;
   for (std::size_t e = 0; e < bench.instances().size() && !in_time.empty(); ++e) {

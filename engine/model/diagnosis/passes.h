@@ -42,6 +42,7 @@ class PassZeros {
  private:
   void compare_orders();
   bool explains_zeros(const Workbench::State& others) const;
+  double share_with_order(const MatrixXd& orders) const;
   MatrixXd in_other_orders(const std::vector<double>& e) const;
   Noise with_passes() const;
   double share_of(const std::string& effect) const;

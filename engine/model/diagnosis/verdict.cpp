@@ -379,7 +379,8 @@ class Judge {
 
   /// Whether most evidence is from one target, so that the effect is a property of that target.
   bool of_one_target(const std::string& name) const {
-    return share_of_one(name, f_.repeats.target, f_.repeats.targets) > most_of_one_target;
+    return share_of_one(f_.bench->without(f_.best, f_.index_of(name)), f_.best, f_.repeats.target,
+                        f_.repeats.targets) > most_of_one_target;
   }
 
   /// An effect that explains no more than a free value or reversal of one target, or a free slope
@@ -420,17 +421,23 @@ class Judge {
            f_.best.criterion + alias_evidence;
   }
 
-  /// Whether one pass contributes most of an effect's evidence, if passes have own zeros.
+  /// Whether one pass contributes most of an effect's evidence, if passes have own zeros: within the
+  /// best set, where another effect may take most of it over, and alone.
   bool of_one_pass(const std::string& name) const {
-    return f_.noise.zero == Noise::Zero::of_pass &&
-           share_of_one(name, f_.repeats.pass, f_.repeats.passes) > most_of_one_pass;
+    if (f_.noise.zero != Noise::Zero::of_pass) return false;
+    const std::size_t e = f_.index_of(name);
+    const auto mostly = [&](const Workbench::State& without, const Workbench::State& with) {
+      return share_of_one(without, with, f_.repeats.pass, f_.repeats.passes) > most_of_one_pass;
+    };
+    return mostly(f_.bench->without(f_.best, e), f_.best) &&
+           mostly(f_.start, f_.bench->with(f_.start, f_.bench->gains(f_.start, e), e));
   }
 
   /// Returns the largest share of an effect's evidence that one group of readings contributes.
-  double share_of_one(const std::string& name, const std::vector<std::uint32_t>& group,
-                      std::size_t groups) const {
-    const VectorXd without = f_.residual(f_.bench->without(f_.best, f_.index_of(name)));
-    const VectorXd explained = without - f_.residual(f_.best);
+  double share_of_one(const Workbench::State& others, const Workbench::State& all,
+                      const std::vector<std::uint32_t>& group, std::size_t groups) const {
+    const VectorXd without = f_.residual(others);
+    const VectorXd explained = without - f_.residual(all);
     std::vector<double> share(groups, 0.0);
     for (Index i = 0; i < without.size(); ++i)
       share[group[static_cast<std::size_t>(i)]] += explained(i) * without(i);

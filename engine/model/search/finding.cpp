@@ -103,27 +103,42 @@ class Finder {
     return walk < alike;
   }
 
-  /// Whether zeros of passes scatter at random: with them, the model or the best explanation is
-  /// better than everything found without, and about as good as with a random walk or zeros of
-  /// runs. They are then noise, and the search is repeated until their size is stable.
+  /// Whether zeros of passes scatter at random. They are then noise, and the search is repeated
+  /// until their size is stable.
   bool passes_scatter() {
     constexpr double same_size = 1.2;  // docs/dev/constants.md, M48
-    if (of_pass_ == 0.0 && !(zeros_left(f_.start).unordered() &&
-                             zeros_left(f_.best).p_of_differences(scatter()) < named_below))
-      return false;
-    const Unsteady of_best = f_.walk_with(terms_of_state(f_.best));
-    if (of_pass_ == 0.0) {
-      const Unsteady of_model = f_.walk_with(terms_of_state(f_.start));
-      const double zero = f_.price_of_zero();
-      const double with_passes =
-          std::min(of_model.of_pass + f_.start.price, of_best.of_pass + f_.best.price) + zero;
-      const double otherwise =
-          std::min(of_model.least() + f_.start.price, of_best.least() + f_.best.price) + zero;
-      if (!(with_passes < std::min(f_.best.criterion, otherwise + alias_evidence))) return false;
-    }
-    if (!(of_best.size_of_pass > same_size * of_pass_)) return false;
-    of_pass_ = of_best.size_of_pass;
+    if (of_pass_ == 0.0) return (of_pass_ = size_of_zeros()) > 0.0;
+    const double size = f_.walk_with(terms_of_state(f_.best)).size_of_pass;
+    if (!(size > same_size * of_pass_)) return false;
+    of_pass_ = size;
     return true;
+  }
+
+  /// Size of random zeros of passes, relative to s; 0 if they are not noise. With such zeros in any
+  /// order the model, the best explanation, or the model with one of its effects must be better than
+  /// everything found without, and about as good as with a random walk or zeros of runs. Effects
+  /// found without zeros may describe these, so each is also tried alone.
+  double size_of_zeros() {
+    if (!(zeros_left(f_.best).p_of_differences(scatter()) < named_below)) return 0.0;
+    std::vector<State> tried{f_.start, f_.best};
+    const Workbench::Gains gains = f_.bench->gains(f_.start);
+    for (const std::size_t b : f_.best.blocks)
+      if (const std::size_t e = f_.bench->effect_of(b); e >= f_.in_model)
+        tried.push_back(f_.bench->with(f_.start, gains, e));
+    const State* likeliest = nullptr;
+    double with_passes = f_.best.criterion, otherwise = std::numeric_limits<double>::infinity();
+    double size = 0.0;
+    for (const State& state : tried) {
+      const Unsteady unsteady = f_.walk_with(terms_of_state(state));
+      const double price = state.price + f_.price_of_zero();
+      otherwise = std::min(otherwise, unsteady.least() + price);
+      if (!(unsteady.of_pass + price < with_passes)) continue;
+      likeliest = &state;
+      with_passes = unsteady.of_pass + price;
+      size = unsteady.size_of_pass;
+    }
+    const bool random = likeliest != nullptr && zeros_left(*likeliest).unordered();
+    return random && with_passes < otherwise + alias_evidence ? size : 0.0;
   }
 
   ZerosOfPasses zeros_left(const State& state) const {
