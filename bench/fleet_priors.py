@@ -3,13 +3,17 @@
 named, and how often a wrong one, with the counts of the same fleet, of another fleet, and without. The readings are made
 here, not by the program; the counts come from a run of it over earlier campaigns.
 
-    python3 bench/fleet_priors.py NONIO [--campaigns 400] [--earlier 60] [--seed 1] [--jobs 2]
+    python3 bench/fleet_priors.py NONIO [--campaigns 400] [--earlier 60] [--seed 1] [--jobs 2] [--sizes]
+
+--sizes: the noise of all campaigns is 1 um, and the earlier effects are as small as the present ones. Then also with the
+counts of the same fleet without their sizes, and with sizes ten times too large.
 """
 import argparse
 import concurrent.futures
 import json
 import pathlib
 import random
+import re
 import subprocess
 import tempfile
 
@@ -20,8 +24,8 @@ OFTEN = {"same": {"backlash:X": 0.7, "periodic:X": 0.2, "backlash-slope:X": 0.1}
          "other": {"pitch-curve:X": 0.6, "zero-drift:X": 0.3, "scale:X": 0.1}}
 
 
-def campaign(folder, number, effect, size, rng):
-    noise = 10 ** rng.uniform(-0.5, 0.5)
+def campaign(folder, number, effect, size, rng, decades=0.5):
+    noise = 10 ** rng.uniform(-decades, decades)
     shape = fleet.shapes().get(effect)
     parts = [lambda x, d, t: size * noise * shape(x, d, t)] if effect else []
     fleet.write(folder, number, parts, noise, 0.0, rng)
@@ -35,12 +39,12 @@ def drawn(often, rng):
     return rng.choices(list(often), list(often.values()))[0]
 
 
-def counts(program, root, often, earlier, rng):
-    """Returns fleet.toml of earlier campaigns with clear effects; a third of them has none."""
+def counts(program, root, often, earlier, rng, sizes=(1, 4), decades=0.5):
+    """Returns fleet.toml of earlier campaigns with effects of these sizes; a third of them has none."""
     site = root / "earlier"
     for n in range(earlier):
         effect = drawn(often, rng) if rng.random() < 2 / 3 else None
-        campaign(site / f"e{n:04d}", n, effect, rng.uniform(1, 4), rng)
+        campaign(site / f"e{n:04d}", n, effect, rng.uniform(*sizes), rng, decades)
         manifest = site / f"e{n:04d}" / "campaign.toml"
         manifest.write_text(manifest.read_text().replace(f'"c{n:04d}"', f'"e{n:04d}"'))
     (site / "site.toml").write_text('format = 1\n[run]\nanalyses = ["model-fit"]\noutputs = ["json"]\n')
@@ -49,6 +53,10 @@ def counts(program, root, often, earlier, rng):
     if done.returncode != 0:
         raise SystemExit(done.stderr)
     return (site / "fleet.toml").read_text()
+
+
+def larger(match):
+    return f"{match[1]} = {10 * float(match[2]):.6g}"
 
 
 def named(program, folder):
@@ -64,12 +72,19 @@ def main():
     parser.add_argument("--earlier", type=int, default=60)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--sizes", action="store_true")
     arguments = parser.parse_args()
     rng = random.Random(arguments.seed)
     print(f"seed {arguments.seed}, {arguments.earlier} earlier campaigns of each fleet")
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)
-        texts = {kind: counts(arguments.nonio, root / kind, often, arguments.earlier, rng) for kind, often in OFTEN.items()}
+        small = {"sizes": (0.2, 0.4), "decades": 0.0} if arguments.sizes else {}
+        decades = small.get("decades", 0.5)
+        texts = {kind: counts(arguments.nonio, root / kind, often, arguments.earlier, rng, **(small if kind == "same" else {}))
+                 for kind, often in OFTEN.items()}
+        if arguments.sizes:
+            texts["counts"] = re.sub(r"(?m)^(median|spread|unit) = .*\n", "", texts["same"])
+            texts["larger"] = re.sub(r"(?m)^(median|spread) = (.*)", larger, texts["same"])
         texts["none"] = texts["same"]
         truth = []
         for n in range(2 * arguments.campaigns):
@@ -78,7 +93,7 @@ def main():
             state, size = rng.getstate(), rng.uniform(0.2, 0.4)
             for kind, text in texts.items():
                 rng.setstate(state), rng.random()
-                campaign(root / f"with-{kind}" / f"c{n:04d}", n, effect, size, rng)
+                campaign(root / f"with-{kind}" / f"c{n:04d}", n, effect, size, rng, decades)
         for kind, text in texts.items():
             site = root / f"with-{kind}"
             (site / "fleet.toml").write_text(text)

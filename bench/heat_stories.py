@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests over time with a hidden cause, from the heat equation on rods and blocks: what does `explain` name?
 
-  heat_stories.py NONIO [--count N] [--seed S] [--story NAME ...] [--auto | --unseen] [--broken HOW]
+  heat_stories.py NONIO [--count N] [--seed S] [--story NAME ...] [--auto | --unseen | --plans] [--broken HOW]
 
 Every story states which first names are right; a verdict `missing` with another name is wrong. Stories without a
 recorded cause must end as `unknown`, those without any as `nothing`. Temperatures are those of places on a body, by
 explicit finite differences; the program knows only first-order lags. Prints each share with its 95 % interval (Wilson).
 With --broken, the recording fails in one way, see BROKEN. With --unseen, the model that `explain --auto` finds in the first 55 % of each test predicts the rest.
+With --plans, the further test that `plans` recommends for each pair of confused effects is made, with the same machine
+and another shop: are the two still confused?
 """
 import argparse
 import json
@@ -82,18 +84,24 @@ def growth(rows, first, last, length):
     return [ALPHA * length / nodes * sum(x - y for x, y in zip(row[first:last], rows[0][first:last])) for row in rows]
 
 
-def story(name, rng):
+def story(name, rng, further=None):
+    """`further` changes air, speed, back and coolant over time into those of another test with the same machine."""
     rows = int(rng.uniform(10, 20) * 3600 / STEP)
     air = shop(rng, rows)
     speed = speeds(rng, rows)
-    top = max(speed) or 1.0
-    power = [rng_power * (s / top) ** 1.5 for s in speed for rng_power in [0.02]]
     loss = rng.uniform(2e-4, 6e-4)
-    spindle = rod(rng, air, power, 0.6, 1.2e-5, loss)
-    column = block(air, rng.uniform(5e-5, 3e-4))
-    back_air = [a + rng_b for a, rng_b in zip(air, shop(rng, rows))]
-    back = block([b - 20.0 for b in back_air], rng.uniform(5e-5, 3e-4))
+    column_rate = rng.uniform(5e-5, 3e-4)
+    warmer = shop(rng, rows)
+    back_rate = rng.uniform(5e-5, 3e-4)
     coolant = [24 + rng.uniform(0.8, 1.2) * (1 if (i * STEP // 1500) % 2 else -1) for i in range(rows)]
+    top = max(speed) or 1.0
+    if further:
+        air, speed, warmer, coolant = further(air, speed, warmer, coolant)
+        rows = len(air)
+    power = [0.02 * (s / top) ** 1.5 for s in speed]
+    spindle = rod(rng, air, power, 0.6, 1.2e-5, loss)
+    column = block(air, column_rate)
+    back = block([a + b - 20.0 for a, b in zip(air, warmer)], back_rate)
     coolant = block(coolant, 2e-3)
     channels = {"speed_rpm": speed, "bearing_c": [r[1] for r in spindle], "nose_c": [r[9] for r in spindle],
                 "air_c": air, "column_c": column, "back_c": back, "coolant_c": coolant}
@@ -260,6 +268,59 @@ def unseen(options):
           f"RMS / u {math.sqrt(sum(r[2] ** 2 for r in of_all) / len(of_all)):.2f} (root mean square)")
 
 
+def further_test(plan, rng):
+    """What `story` needs to make the test of a plan, in another shop."""
+    rows = round(plan["duration_s"] / STEP)
+
+    def change(air, speed, warmer, coolant):
+        new = [shop(rng, rows), shop(rng, rows)]
+        cycle = [24 + rng.uniform(0.8, 1.2) * (1 if (i * STEP // 1500) % 2 else -1) for i in range(rows)]
+        steps = [max(speed) if int(i * STEP / plan["every_s"]) % 2 else min(speed) for i in range(rows)]
+        return new[0], steps, new[1], cycle
+
+    return change
+
+
+def confuses(answer, pair):
+    """Whether an effect that is named or significant stands for both."""
+    of = {answer["verdict"].get("effect"), *answer["significant"]}
+    return any(set(pair) <= {c["effect"], *c["aliases"]} for c in answer["candidates"] if c["effect"] in of)
+
+
+def plans(options):
+    print("| story | tests | confused pairs | with a plan | separated by it | of them named right after it |\n|---|---|---|---|---|---|")
+    sums = [0] * 4
+    with tempfile.TemporaryDirectory() as top:
+        for name in options.story:
+            pairs = planned = apart = right_now = 0
+            for k in range(options.count):
+                seed, folder = options.seed * 1000 + k, pathlib.Path(top) / f"{name}-{k}"
+                answer, right = explain(options.nonio, folder, name, seed, False)
+                after = {}
+                for plan in answer["plans"]:
+                    pairs += 1
+                    if plan["power"] < 4:
+                        continue
+                    planned += 1
+                    made = plan["plan"], plan.get("of"), plan["duration_s"], plan.get("every_s")
+                    if made not in after:
+                        channels, y, _ = story(name, random.Random(f"{seed} {name}"),
+                                               further_test(plan, random.Random(f"{seed} {made}")))
+                        again = folder.with_name(f"{folder.name}-{len(after)}")
+                        campaign(again, channels, y)
+                        after[made] = output_of(options.nonio, "model", "explain", again)
+                    separated = not confuses(after[made], plan["separates"])
+                    apart += separated
+                    right_now += separated and after[made]["verdict"].get("effect") in right
+                    if not separated and options.verbose:
+                        print("  ", name, k, plan["separates"], made, round(plan["power"], 1), after[made]["together"])
+            for i, n in enumerate((pairs, planned, apart, right_now)):
+                sums[i] += n
+            print(f"| {name} | {options.count} | {pairs} | {planned} | {apart} | {right_now} |", flush=True)
+    low, high = wilson(sums[2], sums[1])
+    print(f"\nall: {sums[0]} pairs, {sums[1]} with a plan, {sums[2]} separated by it ({100 * low:.1f} .. {100 * high:.1f} %)")
+
+
 def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument("nonio")
@@ -268,11 +329,13 @@ def main():
     arguments.add_argument("--story", nargs="+", default=list(STORIES))
     arguments.add_argument("--auto", action="store_true")
     arguments.add_argument("--unseen", action="store_true")
+    arguments.add_argument("--plans", action="store_true")
+    arguments.add_argument("--verbose", action="store_true")
     arguments.add_argument("--broken", choices=BROKEN)
     options = arguments.parse_args()
     print(f"seed {options.seed}, {options.count} tests of each story\n")
-    if options.unseen:
-        unseen(options)
+    if options.unseen or options.plans:
+        (unseen if options.unseen else plans)(options)
         return
     print("| story | right verdict | a wrong name | verdicts |\n|---|---|---|---|")
     sums = {}

@@ -85,11 +85,8 @@ class ExplainTogether {
     const modelling::ModelWords words(context.templates,
                                       common_.json ? "en" : context.site.language);
     const auto document = modelling::together_json(*found, words, seed_, errors_);
-    if (!options_.page.empty() && found->together.empty())
-      return complain("--page shows what several campaigns measured; no axis has two campaigns");
     if (!options_.page.empty())
-      if (const auto put = write_page(found->together, words); !put)
-        return complain(text_of(put.error()));
+      if (const auto put = write_page(*found, words); !put) return complain(text_of(put.error()));
     if (common_.json)
       std::cout << storage::dump(document);
     else
@@ -100,7 +97,7 @@ class ExplainTogether {
   }
 
  private:
-  Expected<void> write_page(const std::vector<modelling::Together>& found,
+  Expected<void> write_page(const modelling::FleetExplanation& found,
                             const modelling::ModelWords& words) const {
     NONIO_TRY(auto text, assessment::residuals_page(found, place_->context.templates,
                                                     words.terminal().language()));
@@ -357,8 +354,8 @@ Verb explain_verb(Common& common) {
            day({"--until", &options->together.until, "Of several campaigns those up to this day"}),
            takes(Argument::Takes::file,
                  {"--page", &options->together.page,
-                  "Of several campaigns: also write a page with the residuals of all of them over "
-                  "position, time, temperature and order"}),
+                  "Of several campaigns: also write a page with the residuals of all axes and "
+                  "machined parts over position, time, temperature and order"}),
            {"--all", &options->all, "Every candidate, and why an effect could not be tested"},
            {"--library", &options->library,
             "Accepted and without effect: the library of causes is always searched"},

@@ -98,7 +98,8 @@ void print_forecast(const tables::TableForecast& f, const config::TerminalWords&
   if (f.scatter > 0.0)
     text += "; " + say("compared.scatter", {{"value", with_unit(f.E[1] + f.scatter, q, say)}});
   sentence(std::cout, 0, text);
-  if (f.worse()) sentence(std::cout, 2, say("error") + ": " + say("compared.worse"));
+  if (f.grows) sentence(std::cout, 2, say("error") + ": " + say("compared.worse"));
+  if (f.unproven()) sentence(std::cout, 2, say("compared.unproven"));
 }
 
 Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,

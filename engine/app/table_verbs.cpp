@@ -197,8 +197,8 @@ int tell(const Applied& a, const std::string& control, const OpenCampaign& open,
   tell_findings(open, a.findings);
   if (a.forecast.empty())
     return complain("no measurement of an axis that these tables correct", exit_failed);
-  const auto worse = [](const tables::TableForecast& f) { return f.worse(); };
-  return std::any_of(a.forecast.begin(), a.forecast.end(), worse) ? exit_failed : exit_done;
+  const auto grows = [](const tables::TableForecast& f) { return f.grows; };
+  return std::any_of(a.forecast.begin(), a.forecast.end(), grows) ? exit_failed : exit_done;
 }
 
 /// Value of --active-backlash, such as "0.012", "none" or "X=0.012", in mm or deg.

@@ -246,7 +246,8 @@ void print_advice(std::ostream& out, const Json& part, const std::string& folder
   for (const Json& c : part.at("candidates"))
     if (c.contains("prior_price") && c.at("effect") == effect)
       sentence(out, 2, say("rare", {{"price", say.number(fixed_text(c.at("prior_price"), 1))}}));
-  sentences(out, part.at("next"), say(part.at("plans").empty() ? "next" : "next.apart") + ": ");
+  const bool only_plans = !part.at("plans").empty() && !part.contains("sensors");
+  sentences(out, part.at("next"), say(only_plans ? "next.apart" : "next") + ": ");
   if (verdict.at("kind") == "missing" && !effect.empty())
     out << "  " << say("command") << ": nonio model add " << folder << " "
         << text_in(verdict, "entry") << "\n";

@@ -18,7 +18,7 @@ namespace {
 struct Across {
   const char* id;
   std::vector<double> values;
-  std::string title, none{};
+  std::string title, none{}, says{};
 };
 
 /// Keeps large residuals, and of the others so many that a browser can show the page.
@@ -44,6 +44,22 @@ std::vector<double> times_scale(std::vector<double> values, double scale) {
   return values;
 }
 
+/// Order of the readings in their files, or of machining. A part that states none is named.
+Across order_of(const JointResiduals& part, const Wording& words) {
+  if (!part.made_order)
+    return {"order", in_order(part.residual.size()), words.get("together.order.x")};
+  std::vector<char> stated(part.campaigns.size(), 0);
+  for (std::size_t i = 0; i < part.made_order->size(); ++i)
+    if (std::isfinite((*part.made_order)[i])) stated[part.campaign[i]] = 1;
+  std::string without;
+  for (std::size_t k = 0; k < stated.size(); ++k)
+    if (stated[k] == 0) without += (without.empty() ? "" : ", ") + part.campaigns[k];
+  Across out{"order", *part.made_order, words.get("together.order.made.x")};
+  out.says = without.empty() ? "" : words.get("together.order.made.none", {{"parts", without}});
+  if (std::find(stated.begin(), stated.end(), 1) == stated.end()) out.none = out.says;
+  return out;
+}
+
 std::array<Across, 4> axes_of(const JointResiduals& part, const Wording& words) {
   const Quantity q = part.rotary ? Quantity::angle : Quantity::length;
   double longest = 0.0;
@@ -55,13 +71,14 @@ std::array<Across, 4> axes_of(const JointResiduals& part, const Wording& words) 
                                : longest > 300.0 ? std::pair{"min", 60.0}
                                                  : std::pair{"s", 1.0};
   return {Across{"position", times_scale(part.position, unit_of(q).per_si),
-                 words.get("picture.position.x", {{"axis", part.axis}, {"unit", unit_text(q)}})},
+                 words.get(part.made_order ? "together.position.made.x" : "picture.position.x",
+                           {{"axis", part.axis}, {"unit", unit_text(q)}})},
           Across{"time", times_scale(part.time, 1.0 / seconds),
                  words.get("picture.time.x", {{"unit", unit}}),
                  timed ? "" : words.get("picture.time.none")},
           Across{"temperature", part.temperature, words.get("picture.temperature.x"),
                  warm ? "" : words.get("picture.temperature.none")},
-          Across{"order", in_order(part.residual.size()), words.get("together.order.x")}};
+          order_of(part, words)};
 }
 
 void put_part(View& view, const site::Page& page, const JointResiduals& part) {
@@ -70,16 +87,17 @@ void put_part(View& view, const site::Page& page, const JointResiduals& part) {
   const std::vector<std::size_t> rows = kept_rows(part);
   View& of = view.add("part");
   of.set("name", part.name);
-  of.set("says",
-         words.get("together.part", {{"readings", std::to_string(part.residual.size())},
-                                     {"shown", std::to_string(rows.size())},
-                                     {"count", std::to_string(part.campaigns.size())},
-                                     {"s", printed_number(part.noise, q, 2, words.language())},
-                                     {"unit", unit_text(q)}}));
+  of.set("says", words.get(part.made_order ? "together.made" : "together.part",
+                           {{"readings", std::to_string(part.residual.size())},
+                            {"shown", std::to_string(rows.size())},
+                            {"count", std::to_string(part.campaigns.size())},
+                            {"s", printed_number(part.noise, q, 2, words.language())},
+                            {"unit", unit_text(q)}}));
   for (const Across& a : axes_of(part, words)) {
     View& picture = of.add("picture");
     const std::string heading = words.get("together." + std::string(a.id) + ".title");
     picture.set("heading", heading).set("none", a.none);
+    picture.set("says", a.none.empty() ? a.says : "");
     if (a.none.empty())
       picture.set("chart", site::residuals_chart(page, part, rows, a.values, heading, a.title));
   }

@@ -110,7 +110,7 @@ AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
   WantedPlugins wanted = wanted_plugins(work, results.notes);
   write_tables(work, wanted.controllers, doubts, results);
   out.evaluated.control_tables =
-      control_tables(out.read, results, wanted.controllers, results.notes);
+      control_tables(out.read, results, with_control(work, wanted.controllers), results.notes);
   out.documents = std::move(wanted.outputs);
   if (!out.documents.empty()) out.number = number_request(work, out.documents, results);
   return out;

@@ -82,6 +82,19 @@ void note_not_in_format(const Campaign& campaign, const std::string& controller,
 
 }  // namespace
 
+std::vector<WantedController> with_control(const Work& work, std::vector<WantedController> wanted) {
+  const std::string& control = work.campaign().machine.control;
+  std::vector<Remark> noted;
+  for (const Controller& c : work.context.plugins->controllers()) {
+    if (c.info.name != control || std::any_of(wanted.begin(), wanted.end(),
+                                              [&](const auto& w) { return w.controller == &c; }))
+      continue;
+    if (auto options = settle_controller(work, c.info, noted))
+      wanted.push_back({&c, std::move(*options), false});
+  }
+  return wanted;
+}
+
 WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
   const auto& own = work.read.manifest->run.outputs;
   const PluginNames& names = own ? own : work.context.site.run.outputs;

@@ -288,15 +288,22 @@ Error nothing_to_compare(const reading::ReadCampaign& read) {
 
 namespace {
 
-void set_frequency(model::Term& term, const config::Priors& priors) {
-  if (priors.campaigns > 0) term.frequency = priors.frequency(term.effect->info.name);
+/// Sizes in other units than those of the deviation, such as um/m, are not used.
+void set_frequency(model::Term& term, const config::Priors& priors, Quantity deviation) {
+  if (priors.campaigns == 0) return;
+  const config::Priors::Of of = priors.of(term.effect->info.name);
+  term.frequency = priors.frequency(term.effect->info.name);
+  const Unit unit = unit_of(deviation);
+  constexpr double of_normal = 0.674490;  // half the distance of the quartiles
+  if (of.unit == unit.symbol)
+    term.usual_size = {of.median / unit.per_si, of.spread / of_normal / unit.per_si};
 }
 
 }  // namespace
 
 void use_priors(PartModel& part, config::Priors priors) {
   part.priors = std::move(priors);
-  for (model::Term& term : part.catalogue) set_frequency(term, part.priors);
+  for (model::Term& term : part.catalogue) set_frequency(term, part.priors, part.deviation());
 }
 
 void fill_catalogue(PartModel& part, const reading::ReadCampaign& read) {
@@ -360,7 +367,7 @@ std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const
   for (model::Term& term : terms) {
     term.price = cause_of(*part.library, term)->price();
     term.library = true;
-    set_frequency(term, part.priors);
+    set_frequency(term, part.priors, part.deviation());
   }
   keeps = std::move(effects);
   return terms;

@@ -147,12 +147,15 @@ Axes common_parts(const std::vector<const reading::ReadCampaign*>& campaigns,
         put_axis(out, kinds.of(campaign.machine), *read, part, all);
       else if (!part.unfit.empty())
         all.left_out.push_back(campaign.id + " " + part.part.name + " (" + part.unfit + ")");
-      else if (part.part.kind == model::Part::Kind::course ||
+      else if (part.part.kind != model::Part::Kind::course &&
                part.part.table.size() > most_readings)
         all.left_out.push_back(campaign.id + " " + part.part.name);
       else
         all.alone.push_back({campaign.id, std::move(part)});
     }
+    if (!all.alone.empty() && all.alone.back().campaign == campaign.id)
+      for (const Measurement& m : campaign.measurements)
+        if (m.order == "as-listed") all.alone.back().ordered.push_back(m.id);
   }
   for (auto it = out.begin(); it != out.end();) {
     auto& list = it->second;
@@ -259,6 +262,37 @@ std::string sentence_of(const model::JointEffect& e, const Together& t,
                            {"of-high", place_text(t, high, say)}});
 }
 
+/// U of the difference of two scales with what all readings of a campaign have in common; infinite
+/// if that is not known, nullopt if the effect has no scale that differs.
+std::optional<double> U_of_difference(const model::JointEffect& e, const Together& t) {
+  if (e.holds == Holds::shared || !e.effect.starts_with("scale:")) return std::nullopt;
+  const auto [low, high] = extremes(e);
+  if (low == high || e.groups[low].front().quantity != Quantity::deviation_per_length)
+    return std::nullopt;
+  double variance = 0.0;
+  for (const std::size_t g : {low, high}) {
+    const std::size_t member = e.holds == Holds::own ? g : e.after - (g == 0 ? 1 : 0);
+    const double common = t.u_scale[member].value_or(INFINITY), own = e.groups[g].front().u;
+    variance += common * common + own * own;
+  }
+  return 2.0 * std::sqrt(variance);
+}
+
+/// The sentence, with what instrument, misalignment and temperatures permit to say of a difference.
+std::string qualified(const model::JointEffect& e, const Together& t,
+                      const config::TerminalWords& say) {
+  const std::string sentence = sentence_of(e, t, say);
+  const auto U = U_of_difference(e, t);
+  if (!U) return sentence;
+  const auto [low, high] = extremes(e);
+  if (!std::isfinite(*U)) return sentence + " " + say("joint.scale-unknown");
+  if (e.groups[high].front().value - e.groups[low].front().value > *U) return sentence;
+  const Quantity q = Quantity::deviation_per_length;
+  return sentence + " " +
+         say("joint.scale-within", {{"U", say.number(short_text(printed(*U, q), 2)) + " " +
+                                              std::string(unit_of(q).symbol)}});
+}
+
 std::string sentence_of(const Together& t, const config::TerminalWords& say) {
   const model::JointExplanation& x = t.explanation;
   const Quantity q = t.deviation();
@@ -313,7 +347,9 @@ Json effect_json(const model::JointEffect& e, const Together& t, const ModelWord
     }
   }
   json["aliases"] = e.aliases;
-  json["says"] = sentence_of(e, t, say);
+  if (const auto U = U_of_difference(e, t); U && std::isfinite(*U))
+    storage::put(json, "U_difference", *U, Quantity::deviation_per_length);
+  json["says"] = qualified(e, t, say);
   return json;
 }
 
@@ -405,6 +441,23 @@ bool add_named_causes(Together& t, std::uint64_t seed) {
   return true;
 }
 
+/// Keeps of the explanation what is shown of a part that is explained on its own.
+void keep_explanation(Alone& one, model::Explanation explained) {
+  one.plans = std::move(explained.plans);
+  const auto& lines = one.part.part.table.lines;
+  if (std::none_of(lines.begin(), lines.end(), [](const auto& l) { return !l.body.empty(); }))
+    return;
+  const model::Fit& fit = explained.comparison.fit;
+  std::vector<model::Term> terms = fit.terms;
+  for (const model::Candidate& c : explained.candidates)
+    if (std::find(explained.together.begin(), explained.together.end(), c.term.name()) !=
+        explained.together.end())
+      terms.push_back(c.term);
+  const auto found = model::fit(one.part.part.table, terms, fit.weight, fit.noise);
+  one.residual = found ? found->residual : fit.residual;
+  one.noise = found ? found->s : fit.s;
+}
+
 }  // namespace
 
 std::vector<std::string> each_once(const std::vector<std::string>& names) {
@@ -427,7 +480,8 @@ Expected<FleetExplanation> explain_together(
   auto parts = common_parts(ordered, trouble, out);
   if (!trouble) return fail(trouble.error());
   if (parts.empty() && out.alone.empty())
-    return fail("expected readings of axes, lines in space, circles or parts; found none");
+    return fail(
+        "expected readings of axes, lines in space, circles, parts or displacements; found none");
   const bool one_kind =
       parts.empty() || parts.begin()->first.machine == std::prev(parts.end())->first.machine;
   for (auto& [key, list] : parts) {
@@ -437,6 +491,7 @@ Expected<FleetExplanation> explain_together(
       const Campaign& campaign = one.read->manifest->campaign;
       t.campaigns.push_back(campaign.id), t.dates.push_back(campaign.date);
       t.adjustments.push_back(one.adjustment), t.machines.push_back(name_of(campaign.machine));
+      t.u_scale.push_back(common_scale_uncertainty(one.part.part, campaign, key.axis));
       for (const std::string& effect : one.part.names())
         if (std::find(t.effects.begin(), t.effects.end(), effect) == t.effects.end())
           t.effects.push_back(effect);
@@ -462,7 +517,7 @@ Expected<FleetExplanation> explain_together(
   std::erase_if(out.alone, [&](Alone& one) {
     auto explained = explain_part(one.part, seed);
     if (explained)
-      one.plans = std::move(explained->plans);
+      keep_explanation(one, std::move(*explained));
     else
       out.left_out.push_back(one.campaign + " " + one.part.part.name + " (" +
                              explained.error().message + ")");

@@ -20,6 +20,8 @@ struct Together {
   std::vector<std::string> campaigns, dates, adjustments, machines;
   std::vector<PartModel> parts;
   std::vector<std::string> effects;
+  /// For each member, the standard uncertainty of a scale that its readings have in common.
+  std::vector<std::optional<double>> u_scale;
   model::JointExplanation explanation;
   std::vector<std::shared_ptr<const void>> keeps{};  ///< owners of effects made from library causes
 
@@ -27,11 +29,17 @@ struct Together {
 };
 
 /// A part of one campaign that is explained on its own: an axis that no other campaign measured, a
-/// circle, lines in space, parts that the machine made.
+/// circle, lines in space, parts that the machine made, a displacement over time.
 struct Alone {
   std::string campaign;
   PartModel part;
   std::vector<model::Plan> plans{};  ///< that separate what is named from its aliases
+  /// Of parts that the machine made: of each reading with the effects found, and its standard
+  /// deviation, m.
+  std::vector<double> residual{};
+  double noise = 0.0;
+  /// Measurements of the part whose rows are in the order of machining, as they state.
+  std::vector<std::string> ordered{};
 };
 
 struct FleetExplanation {
@@ -44,8 +52,9 @@ struct FleetExplanation {
 std::vector<std::string> each_once(const std::vector<std::string>& names);
 
 /// Explains together each axis that at least two campaigns of one machine, or of machines of one
-/// stated model, measured, and alone what else has readings to plan for. Left out are displacements
-/// over time, parts with more than 20000 readings, and parts that cannot show their model.
+/// stated model, measured, and alone what else has readings to plan for. Left out are parts with
+/// more than 20000 readings other than displacements over time, and parts that cannot show their
+/// model.
 Expected<FleetExplanation> explain_together(
     const std::vector<const reading::ReadCampaign*>& campaigns, const config::Fleet& fleet,
     std::uint64_t seed);

@@ -49,15 +49,17 @@ Finding place_finding(const model::Place& place, Quantity deviation) {
 }
 
 Finding plan_finding(const model::Plan& plan) {
-  const std::string duration =
-      plan.duration
-          ? ", " + fixed_text(std::max(1.0, std::round(*plan.duration / 60.0)), 0) + " min"
-          : "";
-  return {
-      .id = "plan." + plan.id,
-      .evidence = {{"readings", static_cast<double>(plan.readings), Quantity::count},
-                   {"power", plan.power, Quantity::number}},
-      .texts = {{"one", plan.one}, {"other", plan.other}, {"of", plan.of}, {"duration", duration}}};
+  const auto minutes = [](const std::optional<double>& s) {
+    return s ? fixed_text(std::max(1.0, std::round(*s / 60.0)), 0) + " min" : "";
+  };
+  return {.id = "plan." + plan.id,
+          .evidence = {{"readings", static_cast<double>(plan.readings), Quantity::count},
+                       {"power", plan.power, Quantity::number}},
+          .texts = {{"one", plan.one},
+                    {"other", plan.other},
+                    {"of", plan.of},
+                    {"duration", (plan.duration ? ", " : "") + minutes(plan.duration)},
+                    {"every", minutes(plan.every)}}};
 }
 
 Finding description_finding(const model::Description& d, const PartModel& part) {
@@ -188,6 +190,8 @@ class Next {
     const auto good = std::find_if(e_.plans.begin(), e_.plans.end(),
                                    [](const model::Plan& p) { return p.separates(); });
     if (good != e_.plans.end()) return out_.push_back(plan_finding(*good));
+    if (part_.part.kind == model::Part::Kind::course)
+      return out_.push_back(plan_finding(e_.plans.front()));
     const auto [low, high] = std::minmax_element(part_.part.along.begin(), part_.part.along.end());
     add("wider",
         {{"from", *low, part_.position()},

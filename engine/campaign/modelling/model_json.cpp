@@ -494,6 +494,7 @@ Json plan_json(const model::Plan& plan, const ModelWords& words) {
       {"plan", plan.id}, {"readings", plan.readings}, {"separates", {plan.one, plan.other}}};
   if (!plan.of.empty()) one["of"] = plan.of;
   if (plan.duration) storage::put(one, "duration", *plan.duration, Quantity::time);
+  if (plan.every) storage::put(one, "every", *plan.every, Quantity::time);
   storage::put(one, "power", plan.power, Quantity::number);
   one["says"] = words.plan(plan);
   return one;

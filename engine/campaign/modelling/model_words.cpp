@@ -234,6 +234,19 @@ std::string ModelWords::not_identifiable(const std::string& effect, std::size_t 
               {{"effect", effect}});
 }
 
+std::optional<double> common_scale_uncertainty(const model::Part& part, const Campaign& campaign,
+                                               const std::string& axis) {
+  double length = 0.0;
+  for (const auto& column : part.table.axes)
+    if (column.axis == axis) {
+      double low = INFINITY, high = -INFINITY;
+      for (const double x : column.position)
+        if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
+      length = high - low;
+    }
+  return math::common_scale_uncertainty(campaign, axis, length);
+}
+
 std::vector<std::string> ModelWords::scales(const PartModel& part, const model::Fit& fit,
                                             const Campaign& campaign) const {
   std::vector<std::string> known, u_of_known, alone;
@@ -242,15 +255,7 @@ std::vector<std::string> ModelWords::scales(const PartModel& part, const model::
         p.quantity != Quantity::deviation_per_length)
       continue;
     const std::string axis = p.effect.substr(6, p.effect.find('@') - 6);
-    double length = 0.0;
-    for (const auto& column : part.part.table.axes)
-      if (column.axis == axis) {
-        double low = INFINITY, high = -INFINITY;
-        for (const double x : column.position)
-          if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
-        length = high - low;
-      }
-    if (const auto u = math::common_scale_uncertainty(campaign, axis, length)) {
+    if (const auto u = common_scale_uncertainty(part.part, campaign, axis)) {
       known.push_back(p.effect);
       u_of_known.push_back(localised(evidence_text({"u", *u, p.quantity}), language_) + " " +
                            std::string(unit_of(p.quantity).symbol));

@@ -13,6 +13,11 @@
 /// Sentences about a model, from templates/words/<language>/model.toml.
 namespace nonio::modelling {
 
+/// Standard uncertainty of the scale of an axis that all readings of the part have in common;
+/// nullopt if it is not stated.
+std::optional<double> common_scale_uncertainty(const model::Part&, const Campaign&,
+                                               const std::string& axis);
+
 class ModelWords {
  public:
   ModelWords(const Templates& templates, std::string language)

@@ -454,12 +454,12 @@ void compare_with_measured(const reading::ReadCampaign& read, OutputResult& resu
       p.before = p.name == "B" ? was.B() : p.name == "M" ? was.M() : was.E();
       if (!p.name.starts_with("E") || p.after < p.before) continue;
       const Quantity q = deviation_of(test.rotary);
-      result.findings.push_back({"table.no-gain",
+      result.findings.push_back({"table.present-as-good",
                                  true,
                                  {{"before", p.before, q}, {"after", p.after, q}},
                                  {{"axis", m.axis}},
                                  m.id,
-                                 "This table would not make the axis better."});
+                                 "Keep the active table."});
     }
   }
 }
@@ -503,10 +503,12 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
   f.B[1] = math::predicted_after(was.B(), will.B(), U_B);
   f.E[1] = math::predicted_E_after(was.E(), will.E(), U.E, U_B, f.B[1]);
   f.M[1] = math::predicted_after(was.M(), will.M(), U.M);
+  f.grows = will.E() > was.E();
   f.scatter = std::max(will.E() + range_of_scatter(test) - f.E[1], 0.0);
   // Values of the axis require all targets.
   if (measured.left_out > 0)
-    for (double* value : {f.E, f.B, f.M}) value[0] = value[1] = std::nan(""), f.scatter = 0.0;
+    for (double* value : {f.E, f.B, f.M})
+      value[0] = value[1] = std::nan(""), f.scatter = 0.0, f.grows = false;
   return f;
 }
 

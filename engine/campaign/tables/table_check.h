@@ -51,7 +51,9 @@ struct TableForecast {
   /// Possible increase of E by scatter of the readings (95 %), m or rad; 0 with one run.
   double scatter = 0.0;
   bool U_known = true;  ///< false: the table may leave more than the values after loading
-  bool worse() const { return E[1] > E[0]; }
+  bool grows = false;   ///< E of the means would grow; E[1] also contains what U permits
+  /// Whether E may fall, but not by as much as the readings can show.
+  bool unproven() const { return !grows && E[1] >= E[0]; }
 };
 
 struct Underlay {
@@ -72,8 +74,8 @@ std::vector<Observations> without_tables(const Campaign&, const std::vector<Obse
 /// Removes cross tables, as means of both directions, from curves of one axis over another (EYX,
 /// EXY_even, ...).
 Results without_tables(const Campaign&, const Results&, const std::vector<LoadedTable>&);
-/// Replaces the values before loading by those measured. Adds a finding if a table does not reduce
-/// E.
+/// Replaces the values before loading by those measured. Adds a finding if no smaller E can
+/// be promised.
 void compare_with_measured(const reading::ReadCampaign&, OutputResult&);
 
 /// Returns the active backlash parameter of option `axes`, m or rad; nullopt if not stated.

@@ -392,6 +392,14 @@ static void name_cause(const reports::TableLoaded& t, reports::HistoryChange& c)
   if (t.kind == "offset") c.event += (t.points > 0 ? ", +" : ", ") + std::to_string(t.points);
 }
 
+/// Whether the mean reversal changed by as much as the active backlash value, up to its uncertainty
+/// and a tenth for steps of the control.
+static bool explains(const reports::TableLoaded& t, const HistorySeries& s,
+                     const reports::HistoryChange& c) {
+  return s.quantity == "B_mean" && is_at(t, s.axis, c) &&
+         std::fabs(c.size - t.backlash) <= 2.0 * c.u + 0.1 * std::fabs(t.backlash);
+}
+
 reports::MachineHistory describe(const AssessedMachine& machine, const fs::path& out,
                                  const std::string& due, const std::string& why,
                                  const std::string& today) {
@@ -418,6 +426,12 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
     for (HistorySeries& s : m.series)
       for (reports::HistoryChange& c : s.changes)
         if (is_at(t, s.axis, c)) name_cause(t, c);
+  for (const reports::TableLoaded& t : backlash_changes(machine)) {
+    for (HistorySeries& s : m.series)
+      for (reports::HistoryChange& c : s.changes)
+        if (explains(t, s, c)) name_cause(t, c);
+    m.tables_loaded.push_back(t);
+  }
   return m;
 }
 

@@ -125,7 +125,7 @@ class OfMachine {
 
   bool is_fault(const std::string& axis, const HistoryChange& c) const {
     return std::any_of(d_.tables_loaded.begin(), d_.tables_loaded.end(), [&](const auto& t) {
-      return t.kind != "loaded" && t.kind != "removed" && is_at(t, axis, c);
+      return t.kind != "loaded" && t.kind != "removed" && t.kind != "backlash" && is_at(t, axis, c);
     });
   }
 
@@ -368,15 +368,28 @@ class OfMachine {
                                             : "worklist.out-changed";
       if (table != nullptr) put_table(l, *table);
       describe(l, *explains);
+    } else {
+      put_newer(l, all.front());
     }
     return l;
+  }
+
+  /// States a later value for which its campaign states no limit.
+  void put_newer(WorkItem& l, const Judged& j) const {
+    const store::StoredResult& newest = m_.stored.results[j.series->results.back()];
+    if (newest.campaign <= m_.stored.results[j.result].campaign) return;
+    l.finding.id = "worklist.out-not-judged-since";
+    const reports::OpenValue last = open_value(m_.stored, j.series->results.back());
+    l.finding.evidence.push_back({"last", *last.value, l.unit});
+    put_text(l, "day", m_.stored.campaigns[newest.campaign].day);
   }
 
   /// Adds a line for the last table of an axis if it was loaded incorrectly or without a record,
   /// unless the axis was repaired or compensated later.
   void loaded() {
     std::map<std::string, const reports::TableLoaded*> last;
-    for (const reports::TableLoaded& t : d_.tables_loaded) last[t.axis] = &t;
+    for (const reports::TableLoaded& t : d_.tables_loaded)
+      if (t.kind != "backlash") last[t.axis] = &t;
     for (const auto& [axis, t] : last) {
       const bool is_right = t->kind == "loaded" || t->kind == "removed";
       if ((is_right && (t->is_stated || is_declared(*t))) || is_repaired(axis, t->before)) continue;

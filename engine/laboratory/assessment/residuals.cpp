@@ -38,12 +38,37 @@ reports::JointResiduals residuals_of(const modelling::Together& t) {
   return out;
 }
 
+reports::JointResiduals residuals_of(const modelling::Alone& one) {
+  const double nowhere = std::numeric_limits<double>::quiet_NaN();
+  const model::Part& part = one.part.part;
+  reports::JointResiduals out;
+  out.name = one.campaign + " " + part.name;
+  out.noise = one.noise;
+  out.campaigns = part.measurements;
+  out.campaign = part.measurement;
+  out.position = part.along;
+  out.residual = one.residual;
+  out.time = out.temperature = std::vector<double>(part.table.size(), nowhere);
+  out.made_order.emplace(part.table.size(), nowhere);
+  for (std::size_t i = 0; i < part.row.size(); ++i)
+    if (const std::string& of = part.measurements[part.measurement[i]];
+        std::find(one.ordered.begin(), one.ordered.end(), of) != one.ordered.end())
+      (*out.made_order)[i] = static_cast<double>(part.row[i]) + 1.0;
+  return out;
+}
+
 }  // namespace
 
-Expected<std::string> residuals_page(const std::vector<modelling::Together>& all,
+Expected<std::string> residuals_page(const modelling::FleetExplanation& all,
                                      const Templates& templates, const std::string& language) {
   std::vector<reports::JointResiduals> parts;
-  for (const modelling::Together& t : all) parts.push_back(residuals_of(t));
+  for (const modelling::Together& t : all.together) parts.push_back(residuals_of(t));
+  for (const modelling::Alone& one : all.alone)
+    if (!one.residual.empty()) parts.push_back(residuals_of(one));
+  if (parts.empty())
+    return fail(
+        "--page shows axes that several campaigns measured, and parts that a machine made; there "
+        "are none");
   return reports::residuals_page(parts, templates, language);
 }
 

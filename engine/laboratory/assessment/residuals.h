@@ -8,8 +8,9 @@
 
 namespace nonio::assessment {
 
-/// A page with the residuals of axes in several campaigns.
-Expected<std::string> residuals_page(const std::vector<modelling::Together>& all,
+/// A page with the residuals of axes in several campaigns, and of parts that a machine made. Error:
+/// there are none.
+Expected<std::string> residuals_page(const modelling::FleetExplanation& all,
                                      const Templates& templates, const std::string& language);
 
 }  // namespace nonio::assessment

@@ -52,6 +52,7 @@ struct Taken {
   kernel::MeasuredCurve curve;
   std::optional<kernel::TableCurve> active, written;
   std::vector<Known> recorded;
+  std::optional<double> backlash;  ///< active value, m or rad
   /// Standard uncertainty of the slope without contributions of the instrument, um/mm or
   /// arcsec/deg.
   double u_slope = 0.0;
@@ -72,8 +73,13 @@ std::optional<Taken> taken(const AssessedMachine& m, const StoredTables& stored)
   for (const auto* of : {&out.curve.plus, &out.curve.minus})
     if (!of->empty() && of->size() != n) return std::nullopt;
   if (n < 3) return std::nullopt;
-  if (const auto found = json.find("active"); found != json.end())
+  if (const auto found = json.find("active"); found != json.end()) {
     out.active = table_of(*found, rotary);
+    const Quantity q = deviation_of(rotary);
+    const auto backlash = found->find("backlash" + std::string(unit_of(q).suffix));
+    if (backlash != found->end() && backlash->is_number())
+      out.backlash = backlash->get<double>() / unit_of(q).per_si;
+  }
   if (const auto found = json.find("written"); found != json.end())
     out.written = table_of(*found, rotary);
   if (const auto found = json.find("recorded"); found != json.end() && found->is_array())
@@ -114,6 +120,19 @@ class LoadedOnAxis {
     std::vector<reports::TableLoaded> out;
     for (std::size_t i = 0; i + 1 < all_.size(); ++i)
       if (auto one = between(all_[i], all_[i + 1], i)) out.push_back(std::move(*one));
+    return out;
+  }
+
+  std::vector<reports::TableLoaded> backlash_changes() const {
+    std::vector<reports::TableLoaded> out;
+    for (std::size_t i = 0; i + 1 < all_.size(); ++i) {
+      const Taken &before = all_[i], &after = all_[i + 1];
+      if (!before.backlash || !after.backlash || *before.backlash == *after.backlash) continue;
+      out.push_back(of_pair(before, after));
+      out.back().kind = "backlash", out.back().is_stated = true;
+      out.back().backlash = *after.backlash - *before.backlash;
+      out.back().rms = out.back().left = std::numeric_limits<double>::quiet_NaN();
+    }
     return out;
   }
 
@@ -263,6 +282,14 @@ std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& m) {
   std::vector<reports::TableLoaded> out;
   for (auto& [axis, all] : by_axis(m))
     for (reports::TableLoaded& one : LoadedOnAxis(m, axis, std::move(all)).find())
+      out.push_back(std::move(one));
+  return out;
+}
+
+std::vector<reports::TableLoaded> backlash_changes(const AssessedMachine& m) {
+  std::vector<reports::TableLoaded> out;
+  for (auto& [axis, all] : by_axis(m))
+    for (reports::TableLoaded& one : LoadedOnAxis(m, axis, std::move(all)).backlash_changes())
       out.push_back(std::move(one));
   return out;
 }

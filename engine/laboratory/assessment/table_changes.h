@@ -21,6 +21,8 @@ inline constexpr double change_resolution = 0.1;
 /// removing a table, from `control_tables` in results.json. The last eight known tables are tried:
 /// those written by or active in earlier campaigns and those in the machine record.
 std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& machine);
+/// Returns the pairs of successive campaigns of an axis that state different active backlash values.
+std::vector<reports::TableLoaded> backlash_changes(const AssessedMachine& machine);
 /// Returns the pairs of successive campaigns of an axis of which one does not state the active
 /// table.
 std::vector<reports::TableLoaded> tables_unstated(const AssessedMachine& machine);

@@ -12,6 +12,8 @@ namespace nonio::math {
 namespace {
 
 constexpr double table_level = 0.01;
+/// Share of the errors that an effective table does not leave: docs/dev/constants.md, A30.
+constexpr double half = 0.5;
 
 Eigen::MatrixXd covariance_of(const std::vector<std::vector<double>>& J,
                               const ReadingModel& model) {
@@ -104,16 +106,16 @@ BeforeAfter before_after(std::span<const double> before, std::span<const double>
     if (out.worst == 0 ||
         std::fabs(out.rest[i]) * out.u[out.worst] > std::fabs(out.rest[out.worst]) * out.u[i])
       out.worst = i;
-  const Eigen::LDLT<Eigen::MatrixXd> inverse(V);
-  const Eigen::VectorXd weighted = solution(inverse, b);
+  const auto fits = [&](std::size_t k) { return !significant(out.p[k], table_level); };
+  const Eigen::VectorXd weighted =
+      solution(Eigen::LDLT<Eigen::MatrixXd>(fits(0) ? Eigen::MatrixXd(V + W) : V), b);
   out.f = weighted.dot(a) / weighted.dot(b);
   out.u_f = 1.0 / std::sqrt(weighted.dot(b));
-  const auto fits = [&](std::size_t k) { return !significant(out.p[k], table_level); };
   const int fitting = fits(0) + fits(1) + fits(2);
   using Answer = BeforeAfter::Answer;
   out.answer = fitting > 1    ? Answer::cannot_tell
                : fitting == 0 ? Answer::something_else
-               : fits(0)      ? Answer::worked
+               : fits(0)      ? (out.f + 2.0 * out.u_f > half ? Answer::half_left : Answer::worked)
                : fits(1)      ? Answer::not_active
                               : Answer::wrong_sign;
   return out;

@@ -8,6 +8,9 @@ namespace nonio::model {
 
 class CourseData;
 
+/// RMS ratio up to which two explanations are not separable: docs/dev/constants.md, M40.
+inline constexpr double same_course_rms = 1.05;
+
 /// Fits like `fit` of model/fit.h, but with noise that is correlated in time.
 Expected<Fit> fit_course(const Part& part, const std::vector<Term>& terms);
 Expected<Fit> fit_course(const CourseData& data, const std::vector<Term>& terms);
@@ -27,6 +30,15 @@ Expected<Explanation> explain_course(const Part& part, const std::vector<Term>& 
 double left_out_rms(const Part& part, const std::vector<Term>& terms);
 /// ln of the same, averaged over the displacements that are fitted together.
 double ln_left_out_rms(const CourseData& data, const std::vector<Term>& terms);
+
+/// For each of these members of the best set and each of its aliases the shortest further test that
+/// separates them, or a plan without readings if none that is tried does; `best`: the fit of this set.
+std::vector<Plan> plans_of_course(const CourseData& data, const Fit& best,
+                                  const std::vector<Candidate>& members,
+                                  const std::vector<Term>& catalogue);
+
+/// Channels of an effect: one, two for a difference of channels, none for other effects.
+std::vector<std::string> channels_of(const Term& term, const Observations& o);
 
 /// Returns std::nullopt if no term depends on a channel.
 std::optional<Sensors> sensors_of(const Part& part, const Fit& fit);

@@ -16,7 +16,6 @@ namespace {
 
 // docs/dev/constants.md, M40.
 constexpr std::size_t fitted_anew = 5;
-constexpr double same_rms = 1.05;  // RMS ratio up to which two explanations are not separable
 constexpr double named_p = 0.01;
 constexpr double of_floor = 1.5;  // RMS up to this multiple of the floor is explained by noise
 
@@ -24,7 +23,10 @@ class CourseExplanation {
  public:
   CourseExplanation(const CourseData& data, const std::vector<Term>& model,
                     const std::vector<Term>& catalogue, std::uint64_t seed, Comparison comparison)
-      : data_(data), model_(model), search_(data, comparison.fit, catalogue, seed) {
+      : data_(data),
+        model_(model),
+        catalogue_(catalogue),
+        search_(data, comparison.fit, catalogue, seed) {
     out_.comparison = std::move(comparison);
   }
 
@@ -69,7 +71,9 @@ class CourseExplanation {
 
  private:
   /// Difference of ln evidence below which two explanations are not separable.
-  double same_evidence() const { return static_cast<double>(data_.size()) * std::log(same_rms); }
+  double same_evidence() const {
+    return static_cast<double>(data_.size()) * std::log(same_course_rms);
+  }
 
   /// An effect of the best set; loss: ln evidence without the effect; p: p-value of this loss.
   struct Member {
@@ -123,7 +127,7 @@ class CourseExplanation {
       const double of_set = whole(set_).ln_rms;
       other = proven(search_.best(other), other);
       if (2.0 * one.ln_rms > of_set + least_of_set &&
-          whole(other).ln_rms > of_set + std::log(same_rms))
+          whole(other).ln_rms > of_set + std::log(same_course_rms))
         return;
     }
     set_ = std::move(other);
@@ -249,6 +253,7 @@ class CourseExplanation {
       }
       v.kind = Verdict::Kind::missing;
       v.effect = named();
+      plan();
       // The verdict and its numbers must be those of the first candidate.
       std::stable_partition(out_.candidates.begin(), out_.candidates.end(),
                             [&](const Candidate& c) { return c.term.name() == v.effect; });
@@ -260,6 +265,23 @@ class CourseExplanation {
     v.kind = leaves_only_noise(out_.comparison.fit.rms, out_.comparison.floor)
                  ? Verdict::Kind::nothing
                  : Verdict::Kind::unknown;
+  }
+
+  /// For the effects that are named or significant, with the shapes with which aliases were found.
+  void plan() {
+    std::vector<Candidate> members;
+    for (const Candidate& c : out_.candidates)
+      if (!c.aliases.empty() &&
+          (c.term.name() == out_.verdict.effect || contains(out_.certain, c.term.name())))
+        members.push_back(c);
+    if (members.empty()) return;
+    std::vector<Term> terms = out_.comparison.fit.terms;
+    for (const std::size_t e : set_) {
+      terms.push_back(search_.term_of(e));
+      terms.back().shape = search_.entry(e).shape;
+    }
+    if (const auto fit = fit_course(data_, terms); fit)
+      out_.plans = plans_of_course(data_, *fit, members, catalogue_);
   }
 
   std::string named() const {
@@ -285,7 +307,7 @@ class CourseExplanation {
   }
 
   const CourseData& data_;
-  const std::vector<Term>& model_;
+  const std::vector<Term>&model_, &catalogue_;
   CourseSearch search_;
   CourseSet set_;
   std::vector<Member> members_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "course.h"
@@ -101,16 +102,40 @@ std::vector<double> with_zeros(const Part& part, VectorXd& readings, MatrixXd& c
   return share;
 }
 
-/// Start of the first window (a twentieth, at least 10 readings) with an RMS error above 2 u.
-std::optional<double> fails_from(const std::vector<double>& time, const Prediction& p) {
+/// Start of the first window (a twentieth, at least 10 readings) with an RMS error above 2 u. A zero
+/// that is the mean of all readings is wrong before and after a change, so that the model may seem
+/// to fail from the beginning: then that of the first window is used, with its u.
+std::optional<double> fails_from(const std::vector<double>& time, const Prediction& p,
+                                 bool zero_kept) {
   const std::size_t n = time.size(), window = std::max<std::size_t>(10, n / 20);
-  for (std::size_t from = 0; from + window <= n; from += window) {
-    double squares = 0.0;
-    for (std::size_t i = from; i < from + window; ++i)
-      squares += p.error[i] * p.error[i] / (p.u[i] * p.u[i]);
-    if (squares > 4.0 * static_cast<double>(window)) return time[from];
+  const auto first_above = [&](double zero, double variances) -> std::optional<double> {
+    for (std::size_t from = 0; from + window <= n; from += window) {
+      double squares = 0.0;
+      for (std::size_t i = from; i < from + window; ++i)
+        squares += std::pow((p.error[i] - zero) / p.u[i], 2) / variances;
+      if (squares > 4.0 * static_cast<double>(window)) return time[from];
+    }
+    return std::nullopt;
+  };
+  const auto from = first_above(0.0, 1.0);
+  if (zero_kept || !from || *from > time.front()) return from;
+  const auto first = p.error.begin();
+  const double zero = std::accumulate(first, first + static_cast<std::ptrdiff_t>(window), 0.0) /
+                      static_cast<double>(window);
+  const auto later = first_above(zero, 2.0);
+  return later ? later : from;
+}
+
+/// The part with each channel related to its largest value in `seen`, as the parameters are.
+Part related(Part unseen, const Part& seen) {
+  for (auto& channel : unseen.table.channels) {
+    const auto* known = seen.table.channel(channel.name);
+    if (known == nullptr || known->value.empty()) continue;
+    double largest = 0.0;
+    for (const double v : known->value) largest = std::max(largest, std::fabs(v));
+    channel.largest = largest;
   }
-  return std::nullopt;
+  return unseen;
 }
 
 bool leaves_range(const Part& seen, const Part& unseen) {
@@ -238,7 +263,7 @@ double error_over_u(const Part& seen, const std::vector<Term>& model) {
 
 Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, const Part& unseen,
                              bool zero_kept) {
-  auto out = applied(seen, model, unseen, zero_kept);
+  auto out = applied(seen, model, related(unseen, seen), zero_kept);
   if (!out) return out;
   const double factor = error_over_u(seen, model);
   std::size_t inside = 0;
@@ -247,7 +272,7 @@ Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, c
     if (std::fabs(out->error[i]) <= 2.0 * out->u[i]) ++inside;
   }
   out->inside = static_cast<double>(inside) / static_cast<double>(out->u.size());
-  out->fails_from = fails_from(unseen.table.time, *out);
+  out->fails_from = fails_from(unseen.table.time, *out, zero_kept);
   out->outside = leaves_range(seen, unseen);
   return out;
 }

@@ -44,17 +44,6 @@ class Terms {
   std::optional<CourseSides> sides_;
 };
 
-/// One channel, two for a difference of channels, none for other effects.
-std::vector<std::string> channels_of(const Term& term, const Observations& o) {
-  const std::string& name = term.axis.name;
-  if (o.channel(name) != nullptr) return {name};
-  const std::size_t dash = name.find('-');
-  if (dash == std::string::npos || o.channel(name.substr(0, dash)) == nullptr ||
-      o.channel(name.substr(dash + 1)) == nullptr)
-    return {};
-  return {name.substr(0, dash), name.substr(dash + 1)};
-}
-
 class Worth {
  public:
   Worth(const Part& part, const Fit& fit) : part_(part), fit_(fit), terms_(part, fit.terms) {
@@ -147,6 +136,16 @@ class Worth {
 };
 
 }  // namespace
+
+std::vector<std::string> channels_of(const Term& term, const Observations& o) {
+  const std::string& name = term.axis.name;
+  if (o.channel(name) != nullptr) return {name};
+  const std::size_t dash = name.find('-');
+  if (dash == std::string::npos || o.channel(name.substr(0, dash)) == nullptr ||
+      o.channel(name.substr(dash + 1)) == nullptr)
+    return {};
+  return {name.substr(0, dash), name.substr(dash + 1)};
+}
 
 std::optional<Sensors> sensors_of(const Part& part, const Fit& fit) {
   return Worth(part, fit).sensors();

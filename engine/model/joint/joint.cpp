@@ -509,10 +509,36 @@ class JointSearch {
 
 }  // namespace
 
+namespace {
+
+/// The members with the terms of the effects, with their shapes, of which the noise is free.
+std::vector<Member> with_found(std::vector<Member> members, const JointExplanation& x) {
+  for (Member& member : members)
+    for (const JointEffect& effect : x.effects)
+      for (Term term : member.catalogue) {
+        if (term.name() != effect.effect) continue;
+        term.shape.clear();
+        for (const Parameter& p : effect.groups.front())
+          if (p.shape) term.shape.push_back(p.value);
+        member.found.push_back(std::move(term));
+      }
+  return members;
+}
+
+}  // namespace
+
+/// Drifts that no member has in its model look like zeros of passes, which hide what is constant in
+/// a pass. If the effects found take most of these zeros away, the search is made with what is left.
 Expected<JointExplanation> explain_together(const std::vector<Member>& members,
                                             std::uint64_t seed) {
+  constexpr double most_left = 0.5;
   NONIO_TRY(const auto readings, read_together(members));
-  return JointSearch(members, readings, seed).run();
+  JointExplanation first = JointSearch(members, readings, seed).run();
+  if (first.effects.empty() || readings.offsets == 0.0) return first;
+  const std::vector<Member> knowing = with_found(members, first);
+  const auto again = read_together(knowing);
+  if (!again || again->offsets > most_left * readings.offsets) return first;
+  return JointSearch(knowing, *again, seed).run();
 }
 
 }  // namespace nonio::model

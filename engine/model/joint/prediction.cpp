@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <numeric>
 
 #include "data/design.h"
 
@@ -44,8 +46,40 @@ Expected<Observations> joined(const Observations& seen, const Observations& unse
     for (std::size_t i = 0; i < seen.size(); ++i) out.sense.push_back(seen.sense_of(i));
     for (std::size_t i = 0; i < unseen.size(); ++i) out.sense.push_back(unseen.sense_of(i));
   }
+  const auto own = [](Observations::Channel channel, std::uint32_t from, std::size_t lines) {
+    if (channel.lines.empty()) {
+      channel.lines.resize(lines);
+      std::iota(channel.lines.begin(), channel.lines.end(), 0U);
+    }
+    for (std::uint32_t& line : channel.lines) line += from;
+    return channel;
+  };
+  for (auto& channel : out.channels) channel = own(std::move(channel), 0, seen.lines.size());
+  for (const auto& channel : unseen.channels)
+    out.channels.push_back(own(channel, first, unseen.lines.size()));
   append_measured(out, unseen);
   return out;
+}
+
+/// The term with the lines of both. An error if its groups are not those of the unseen lines.
+Expected<Term> for_both(Term term, const Part& unseen) {
+  if (!term.grouping) return term;
+  auto both = std::make_shared<Grouping>(*term.grouping);
+  const auto same = std::find_if(unseen.groupings.begin(), unseen.groupings.end(),
+                                 [&](const auto& g) { return g->by == both->by; });
+  if (same == unseen.groupings.end())
+    return fail(term.name() + ": the readings of the other campaign are not grouped by " +
+                both->by + ", so it is not known which of its values applies");
+  for (const std::uint32_t group : (*same)->group) {
+    const std::string& name = (*same)->name[group];
+    const auto known = std::find(both->name.begin(), both->name.end(), name);
+    if (known == both->name.end())
+      return fail(term.name() + ": the model has no value for the " + both->by + " " + name +
+                  " of the other campaign");
+    both->group.push_back(static_cast<std::uint32_t>(known - both->name.begin()));
+  }
+  term.grouping = std::move(both);
+  return term;
 }
 
 Expected<MatrixXd> columns_of_terms(const Observations& o, const std::vector<Term>& terms) {
@@ -87,8 +121,10 @@ Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& m
   NONIO_TRY(const auto compared, compare(seen, model));
   NONIO_TRY(const Observations both, joined(seen.table, unseen.table));
   std::vector<Term> named, own, others = set_up;
-  for (const Term& term : compared.fit.terms)
-    (term.effect->is_nuisance ? own : named).push_back(term);
+  for (const Term& term : compared.fit.terms) {
+    NONIO_TRY(auto both_of, for_both(term, unseen));
+    (term.effect->is_nuisance ? own : named).push_back(std::move(both_of));
+  }
   std::erase_if(others, [](const Term& t) { return !t.effect->is_nuisance; });
   for (Term& term : others) term.axis.name = mark + term.axis.name;
   NONIO_TRY(const MatrixXd of_model, columns_of_terms(both, named));

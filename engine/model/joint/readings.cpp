@@ -88,7 +88,6 @@ class Reader {
 
   Expected<JointReadings> run() {
     list_places();
-    list_blocks();
     for (const Member& member : members_) {
       auto read = of_member(member);
       if (!read) {
@@ -97,9 +96,10 @@ class Reader {
       }
       out_.members.push_back(std::move(*read));
     }
-    const double passes = offsets_of_passes();
+    list_blocks();
+    out_.offsets = offsets_of_passes();
     for (std::size_t m = 0; m < members_.size(); ++m)
-      if (auto put = put_columns(members_[m], passes, grounds_[m], out_.members[m]); !put)
+      if (auto put = put_columns(members_[m], out_.offsets, grounds_[m], out_.members[m]); !put)
         return fail(put.error());
     drop_rare();
     return std::move(out_);
@@ -122,6 +122,15 @@ class Reader {
       places_[i] += (high - low) * static_cast<double>(i) / static_cast<double>(most - 1);
   }
 
+  /// Standard uncertainty of the RMS of an effect that all members have.
+  double u_of_size() const {
+    double sum = 0.0;
+    for (std::size_t m = 0; m < members_.size(); ++m)
+      sum += static_cast<double>(members_[m].part->table.size()) /
+             (out_.members[m].s * out_.members[m].s);
+    return 1.0 / std::sqrt(sum);
+  }
+
   /// Effects that no member has in its model, with the shapes of the member with the most readings.
   void list_blocks() {
     std::map<std::string, std::pair<const Term*, const Member*>> all;
@@ -136,7 +145,7 @@ class Reader {
       }
     std::vector<Term> terms;
     for (const std::string& name : order) terms.push_back(*all[name].first);
-    set_weights(terms);
+    set_weights(terms, u_of_size());
     for (const Term& one : terms) {
       const std::string name = one.of_all();
       const auto [term, member] = all[name];
@@ -203,8 +212,14 @@ class Reader {
 
   Expected<MemberReadings> of_member(const Member& member) {
     const Observations& o = member.part->table;
-    NONIO_TRY(const auto compared, compare(*member.part, member.model));
-    grounds_.push_back({GroundworkOf(*member.part, member.model, nullptr), compared.fit.terms});
+    std::vector<Term> terms = member.model;
+    terms.insert(terms.end(), member.found.begin(), member.found.end());
+    NONIO_TRY(const auto compared, compare(*member.part, terms));
+    grounds_.push_back({GroundworkOf(*member.part, terms, nullptr), compared.fit.terms});
+    std::erase_if(grounds_.back().terms, [&](const Term& t) {
+      return std::any_of(member.found.begin(), member.found.end(),
+                         [&](const Term& f) { return f.name() == t.name(); });
+    });
     const Ground& ground = grounds_.back().ground();
     MemberReadings out;
     out.pass = ground.repeats.pass, out.cell = ground.repeats.cell;
@@ -215,7 +230,7 @@ class Reader {
     out.dof = floor ? compared.floor->dof : static_cast<double>(compared.fit.redundancy);
     if (!(out.s > 0.0) || !(out.dof >= 1.0))
       return fail("expected readings that scatter, and more of them than the model has unknowns");
-    sum_offsets(ground, o.deviation, out.s);
+    sum_offsets(ground, member.found.empty() ? o.deviation : compared.fit.residual, out.s);
     return out;
   }
 

@@ -44,6 +44,7 @@ struct MemberReadings {
 struct JointReadings {
   std::vector<JointBlock> blocks;
   std::vector<MemberReadings> members;
+  double offsets = 0.0;  ///< variance of the zeros of passes, relative to that of a reading
 };
 
 Expected<JointReadings> read_together(const std::vector<Member>& members);

@@ -20,8 +20,6 @@ using State = Workbench::State;
 /// alias; other shapes of the remaining effects are then not tried: docs/dev/constants.md, M41.
 constexpr double hopeless = 100.0;
 
-double normal_below(double x) { return 0.5 * std::erfc(-x * std::numbers::sqrt2 / 2.0); }
-
 /// In units of the variance of a reading, an effect reduces the sum of squares by about (sqrt(a^2 +
 /// k - 1) + z)^2: a^2 detectable sum of squares, k number of unknowns, z standard normal.
 class Sizes {

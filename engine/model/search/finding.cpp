@@ -24,7 +24,6 @@ class Finder {
       : f_{part, Repeats(part.table), model, model.size(), seed}, model_(model) {
     for (Term& c : offered_to(model, catalogue))
       (c.effect->description ? f_.descriptions : f_.terms).push_back(std::move(c));
-    set_weights(std::span(f_.terms).subspan(f_.in_model));
   }
 
   Expected<Finding> run() {
@@ -60,6 +59,8 @@ class Finder {
       f_.noise.zero = Noise::Zero::of_pass;
       f_.noise.zero_size = f_.noise.zero_found = of_pass_;
     }
+    set_weights(std::span(f_.terms).subspan(f_.in_model),
+                scatter() / std::sqrt(static_cast<double>(f_.part.table.size())));
     f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target, f_.in_model, &made_,
                      f_.noise, scatter());
     NONIO_TRY(auto start, best_start());

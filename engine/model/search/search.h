@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "fit/weights.h"
 #include "fit/workbench.h"
 
 namespace nonio::model {
@@ -53,9 +54,5 @@ std::vector<char> named_in(const Workbench& bench, const Workbench::State& compl
 
 /// Returns p of the F-test of one effect of a state; not corrected for the search.
 double p_of(const Workbench& bench, const Workbench::State& state, std::size_t effect);
-
-/// An effect is named if the probability of such evidence by noise, anywhere in the search, is
-/// below this value: docs/dev/constants.md, M2.
-inline constexpr double named_below = 0.005;
 
 }  // namespace nonio::model

@@ -85,6 +85,8 @@ const char* name_of(BeforeAfter::Answer answer) {
   switch (answer) {
     case BeforeAfter::Answer::worked:
       return "before-after.worked";
+    case BeforeAfter::Answer::half_left:
+      return "before-after.half-left";
     case BeforeAfter::Answer::not_active:
       return "before-after.not-active";
     case BeforeAfter::Answer::wrong_sign:

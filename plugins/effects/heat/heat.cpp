@@ -228,8 +228,9 @@ Expected<Columns> source(const Observations& o, const Axis& of, const std::vecto
   const Channel* c = o.channel(of.name);
   if (c == nullptr || shape.size() != 2) return no_channel(of.name);
   Channel power = *c;
-  double largest = 0.0;
-  for (const double n : power.value) largest = std::max(largest, std::fabs(n));
+  double largest = c->largest.value_or(0.0);
+  if (!c->largest)
+    for (const double n : power.value) largest = std::max(largest, std::fabs(n));
   if (!(largest > 0.0)) return fail("channel \"" + of.name + "\" is 0 everywhere");
   for (double& n : power.value) n = std::pow(std::fabs(n) / largest, shape[1]);
   return Columns{lagged(power, shape[0], o.time)};

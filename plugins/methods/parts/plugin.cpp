@@ -214,7 +214,13 @@ Method part() {
         .unit = "um/(m K)",
         .help = "Coefficient of expansion of the part; needed with temperatures_c.",
         .min = 0.0,
-        .max = 100.0}}};
+        .max = 100.0},
+       {.name = "order",
+        .default_value = std::string(),
+        .unit = "",
+        .help = "Order of the rows: that in which the machine made the features (as-listed), or "
+                "unknown. Residuals are shown over it.",
+        .choices = {"as-listed", "unknown"}}}};
   using Role = Method::Column::Role;
   m.columns = {{nominal[0], Quantity::length, Role::none, "Nominal place of the feature, X."},
                {nominal[1], Quantity::length, Role::none, "The same, Y."},

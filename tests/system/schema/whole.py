@@ -54,7 +54,7 @@ def campaign():
             {"id": "L1", "kind": "lengths", "file": "l.csv"},
             {"id": "A1", "kind": "artefact", "file": "a.csv", "artefact": "plate"},
             {"id": "A2", "kind": "artefact-certificate", "file": "a2.csv", "artefact": "plate"},
-            {"id": "P", "kind": "part", "file": "p.csv", "origin": {"X": 100}, "turned_deg": 90, "temperatures_c": [22.0, 20.0], "expansion_um_per_m_K": 23.8},
+            {"id": "P", "kind": "part", "file": "p.csv", "origin": {"X": 100}, "turned_deg": 90, "temperatures_c": [22.0, 20.0], "expansion_um_per_m_K": 23.8, "order": "as-listed"},
             {"id": "O", "kind": "observations", "file": "o.csv"}],
         "model": {"effects": ["backlash:X", "sag:X"], "compensate": "model",
                   "formula": [{"name": "sag", "axis": "X", "expression": "a*cos(2*_pi*p/P)",

@@ -5,6 +5,7 @@ import math
 import pathlib
 import random
 import re
+import shutil
 import sys
 import tempfile
 import unittest
@@ -29,6 +30,7 @@ kind = "thermal"
 file = "warm.csv"
 {more}"""
 STEP, ROWS = 30.0, 1500
+SAMPLES = pathlib.Path(__file__).resolve().parents[3] / "samples/site"
 # The bearing follows the speed and the displacement the bearing.
 CAUSES = ("heat:bearing", "heat-slow:bearing", "heat-source:spindle", "heat-source-slow:spindle")
 
@@ -264,6 +266,37 @@ class Heat(VerbTest):
             self.assertEqual(answer["sensors"]["no_thermometer_for"], "spindle")
             self.assertTrue(any("place one" in says for says in answer["next"]), answer["next"])
 
+    def test_every_confused_pair_has_a_further_test_or_is_said_to_have_none(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            rows = record(seed, [3.0])
+            folder = self.campaign("all", rows)
+            answer = self.json("explain", folder)
+            named = {answer["verdict"]["effect"], *answer["significant"]}
+            confused = {(c["effect"], a) for c in answer["candidates"] if c["effect"] in named for a in c["aliases"]}
+            self.assertEqual({tuple(p["separates"]) for p in answer["plans"]}, confused)
+            whole = rows[-1][0]
+            for plan in answer["plans"]:
+                if plan["power"] < 4:
+                    self.assertEqual((plan["plan"], plan["readings"]), ("none", 0))
+                    continue
+                self.assertEqual((plan["plan"], plan["of"]), ("other-speeds", "spindle"))
+                self.assertAlmostEqual(plan["readings"], plan["duration_s"] / STEP, delta=2)
+                self.assertLessEqual(plan["duration_s"], 2 * whole + 60)
+                self.assertIn(f"every {plan['every_s'] / 60:.0f} min", plan["says"])
+            # Without a speed that could be chosen, no test can be planned.
+            text = table([row[:-1] for row in rows], ("z",)).replace(",spindle_rpm", "")
+            bare = self.write("bare", MANIFEST.format(id="bare", more=""), **{"warm.csv": text})
+            other = self.json("explain", bare)
+            self.assertEqual({p["plan"] for p in other["plans"]} - {"no-source"}, set())
+            # Several campaigns: one list of all pairs.
+            both = self.json("explain", folder, bare)
+            self.assertEqual(both["alone"], ["all warm/z", "bare warm/z"])
+            self.assertNotIn("left_out", both)
+            listed = [(n["campaign"], n["plan"], *n["separates"]) for n in both["next"]]
+            expected = [(a["campaign"], p["plan"], *p["separates"]) for a in (answer, other) for p in a["plans"]]
+            self.assertCountEqual(listed, expected)
+
     def test_what_is_known_of_channels(self):
         rows, air = record(21, [2.0]), '[[measurement.channel]]\nname = "hall"\nrole = "air"\n'
         names = lambda folder: {c["effect"] for c in self.json("explain", folder)["candidates"]}
@@ -483,6 +516,59 @@ class Heat(VerbTest):
             self.assertFalse([n for n in names if "hall" in n], names)
             self.assertIn("heat:wall", names)
             self.assertIn("the thermometer hall fails", self.nonio("model", "add", folder, "heat:hall", expect=2).stderr)
+
+    def test_the_parameter_of_a_source_relates_to_the_largest_speed_of_its_own_day(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            rng, days = random.Random(seed), []
+            for name, levels in (("fast", [0, 3000, 9000]), ("slow", [0, 1500, 3000])):
+                speed = [n for _ in range(40) for n in [rng.choice(levels)] * rng.randint(60, 120)][:ROWS]
+                speed[:3], speed[200:300] = [0] * 3, [levels[-1]] * 100
+                late = follow([(n / 9000) ** 2 for n in speed], 900.0)
+                rows = [[i * STEP, 20 * late[i] + rng.gauss(0, 0.05), 20 + rng.gauss(0, 0.01), 20 + rng.gauss(0, 0.01),
+                         speed[i]] for i in range(ROWS)]
+                days.append(self.campaign(name, rows, more='[model]\neffects = ["heat-source:spindle"]\n'))
+            for zero in ("free", "kept"):
+                part, = self.json("compare", days[1], "--model-of", days[0], "--zero", zero)["parts"]
+                self.assertLess(part["rms_um"], 0.1, zero)
+                self.assertGreater(part["inside_U"], 0.9, zero)
+
+    def test_a_model_no_longer_holds_from_its_change_on(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            rows, rng = record(seed, [3.0]), random.Random(seed)
+            model = '[model]\neffects = ["heat:bearing"]\n'
+            seen = self.campaign("seen", rows, more=model)
+            from_row = rng.randint(500, 1100)
+            later = [[*row[:1], row[1] + 0.02 * max(0, i - from_row), *row[2:]] for i, row in enumerate(record(seed + 1, [3.0]))]
+            part, = self.json("compare", self.campaign("later", later, more=model), "--model-of", seen)["parts"]
+            self.assertLess(abs(part["holds_until_s"] - from_row * STEP), 0.06 * ROWS * STEP, part)
+
+    def test_a_model_predicts_its_own_runs_as_compare_describes_them(self):
+        """Groups and channels of both campaigns are in the columns of the prediction."""
+        rng, rows, i = random.Random(5), ["time_s,run,direction,target_mm,deviation_um,screw_c"], 0
+        screw = follow([20 + 8 * (k > 20) for k in range(400)], 2000.0)
+        for run in range(1, 6):
+            for sign, targets in (("+", range(0, 801, 80)), ("-", range(800, -1, -80))):
+                for x in targets:
+                    d = 11 * (screw[i] - screw[0]) * (x - 400) / 1000 - (2 if sign == "-" else 0) + rng.gauss(0, 0.1)
+                    rows.append(f"{i * STEP:.0f},{run},{sign},{x},{d:.3f},{screw[i]:.3f}")
+                    i += 1
+        axis = '[machine.axes.X]\nkind = "linear"\n[[measurement]]\nid = "{0}"\nkind = "axis"\naxis = "X"\nfile = "{0}.csv"\n'
+        head = MANIFEST.split("[[measurement]]", maxsplit=1)[0]
+        model = '[model]\neffects = [{}]\n'
+        grown = self.write("grown", head.format(id="grown") + axis.format("x") + model.format('"backlash:X", "heat-growth:screw"'),
+                           **{"x.csv": "\n".join(rows) + "\n"})
+        adjusted, text = self.site / "adjusted", '"backlash:X@adjustment", "scale:X"'
+        shutil.copytree(SAMPLES.parent / "certificates/adjusted", adjusted)
+        file = adjusted / "campaign.toml"
+        file.write_text(file.read_text().split("[model]")[0] + model.format(text))
+        for campaign in (grown, adjusted):
+            described, = self.json("compare", campaign)["parts"]
+            predicted, = self.json("compare", campaign, "--model-of", campaign)["parts"]
+            self.assertLess(abs(predicted["rms_um"] - described["rms_um"]), 0.03 * described["rms_um"], campaign)
+        done = self.nonio("compare", grown, "--model-of", adjusted, expect=2)
+        self.assertIn("not grouped by adjustment", done.stderr)
 
     def test_campaigns_without_a_common_displacement(self):
         one = self.campaign("one", record(11, [2.0]))

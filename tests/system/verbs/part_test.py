@@ -132,6 +132,24 @@ class Part(unittest.TestCase):
         # Evidence is about the squared distance of the explanations, less the price of the curve.
         self.assertAlmostEqual(plan["power"], size * math.sqrt(200), delta=0.35 * size * math.sqrt(200))
 
+    def test_the_page_shows_the_residuals_over_the_order_of_machining(self):
+        folders = [self.campaign(name, "none", parts=[("P1", 0), ("P2", 90)]) for name in ("a", "b")]
+        before = self.explain(folders[0])
+        manifest = folders[0] / "campaign.toml"
+        manifest.write_text(manifest.read_text().replace('file = "P1.csv"', 'file = "P1.csv"\norder = "as-listed"'))
+        page = self.top / "page.html"
+        command = [NONIO, "model", "explain", *map(str, folders), "--page", str(page), "--quiet"]
+        subprocess.run(command, check=True, capture_output=True)
+        text = page.read_text()
+        of_a, of_b = text.split("<h2>")[1:]
+        self.assertIn('data-x="Number of the coordinate in the order of machining"', of_a)
+        self.assertIn("No order of machining is stated for P2: write", of_a)
+        self.assertNotIn("order of machining\"", of_b)
+        self.assertIn("No order of machining is stated for P1, P2: write", of_b)
+        self.assertNotIn("Number of the coordinate", of_b)
+        # The order is no time: it changes nothing of the explanation.
+        self.assertEqual(self.explain(folders[0]), before)
+
     def test_no_room_for_another_place(self):
         folder = self.campaign("a", "pitch-curve:Y", parts=[("P1", 0)])
         manifest = folder / "campaign.toml"

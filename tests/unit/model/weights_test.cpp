@@ -16,7 +16,7 @@ std::vector<double> weights_of(const std::vector<std::optional<double>>& frequen
     term.frequency = frequency;
     term.weight = 3.0;
   }
-  set_weights(terms);
+  set_weights(terms, 0.0);
   std::vector<double> out;
   for (const Term& term : terms) out.push_back(term.weight);
   return out;
@@ -48,6 +48,31 @@ TEST(Weights, HaveAMeanOfAtMostOne) {
       sum += w;
     }
     EXPECT_LE(sum, static_cast<double>(others + 1) * (1.0 + 1e-12)) << others;
+  }
+}
+
+/// Weights of an effect with a usual size, in u of a size, and of one as frequent without.
+std::pair<double, double> sized(double median, double deviation) {
+  constexpr double u = 1e-7;
+  std::vector<Term> terms(12, Term{nullptr, {}});
+  for (Term& term : terms) term.frequency = 0.1;
+  terms[0].usual_size = {u * median, u * deviation};
+  set_weights(terms, u);
+  double sum = 0.0;
+  for (const Term& term : terms) sum += term.weight;
+  EXPECT_NEAR(sum, 12.0, 1e-9);
+  return {terms[0].weight, terms[1].weight};
+}
+
+TEST(Weights, AreLargerNearTheLimitOfDetectionThanFarFromIt) {
+  for (const double near : {3.0, 4.0}) {
+    const auto [own, other] = sized(near, 0.5);
+    EXPECT_GT(own, 1.3 * other) << near;
+  }
+  for (const double far : {0.5, 30.0}) {
+    const auto [own, other] = sized(far, 0.0);
+    EXPECT_LT(own, other) << far;
+    EXPECT_GE(own, 0.7 * other) << far;
   }
 }
 

@@ -108,7 +108,7 @@ struct Story {
   Curve more = [](double) { return 0.0; };
 };
 
-TEST(BeforeAfter, NamesTheEffectOfTheTableInTwoThousandCampaigns) {
+TEST(BeforeAfter, NamesTheEffectOfTheTable) {
   std::cout << "seed " << seed << "\n";
   const std::vector<Story> stories{
       {"worked", 0.0},
@@ -119,7 +119,7 @@ TEST(BeforeAfter, NamesTheEffectOfTheTableInTwoThousandCampaigns) {
   for (const Story& story : stories) {
     std::map<std::string, int> told;
     double inside = 0.0;
-    constexpr int campaigns = 2000;
+    constexpr int campaigns = 800;
     for (int c = 0; c < campaigns; ++c) {
       Shop shop;
       shop.rng.seed(seed + static_cast<unsigned>(c));
@@ -145,7 +145,8 @@ TEST(BeforeAfter, NamesTheEffectOfTheTableInTwoThousandCampaigns) {
     EXPECT_GE(told[story.wanted], static_cast<int>(0.97 * campaigns)) << story.wanted;
     if (story.more(1.0) != 0.0) continue;  // no share of the error
     EXPECT_GE(inside, 0.94 * campaigns) << story.wanted;
-    EXPECT_LE(inside, 0.965 * campaigns) << story.wanted;
+    if (story.kept > 0.0)  // U contains the steps of a table, which these tables do not have
+      EXPECT_LE(inside, 0.965 * campaigns) << story.wanted;
   }
 }
 
@@ -210,7 +211,7 @@ TEST(BeforeAfter, KnowsWhatTablesOfOtherPointsDid) {
         {After::half, "halved", "something-else"},
         {After::step, "a step came later", "something-else"}}) {
     std::map<std::string, int> told;
-    constexpr int campaigns = 1000;
+    constexpr int campaigns = 400;
     for (int c = 0; c < campaigns; ++c) {
       std::mt19937 rng(seed + 10000U + static_cast<unsigned>(c));
       const auto any = [&](double low, double high) {
@@ -276,6 +277,39 @@ TEST(BeforeAfter, KnowsWhatTablesOfOtherPointsDid) {
     for (const auto& [name, count] : told) std::cout << " " << name << " " << count;
     std::cout << "\n";
     EXPECT_GE(told[one.wanted], campaigns * 98 / 100) << one.name;
+  }
+}
+
+// Errors of single targets, as of a scale, that a coarse table may miss: half of them fits no error at each stop.
+TEST(BeforeAfter, HalfOfACoarseTableHasNotWorked) {
+  std::cout << "seed " << seed << "\n";
+  for (const double taken : {1.0, 0.5}) {
+    std::map<std::string, int> told;
+    constexpr int campaigns = 500;
+    for (int c = 0; c < campaigns; ++c) {
+      std::mt19937 rng(seed + 30000U + static_cast<unsigned>(c));
+      std::normal_distribution<double> normal;
+      Shop shop;
+      shop.rng.seed(seed + 40000U + static_cast<unsigned>(c));
+      shop.scatter = 0.3 * um, shop.half_reversal = 0.0;
+      shop.control.emplace();
+      shop.control->value_step.linear = 1.0 * um;
+      std::map<double, double> error;
+      for (const double x : shop.targets) error[x] = x == 0.0 ? 0.0 : 4 * um * normal(rng);
+      shop.line("before", [&](double x) { return error.at(x); });
+      shop.line("after", [&](double x) {
+        const double entry = std::round(taken * error.at(x) / um) * um;
+        return error.at(x) - entry;
+      });
+      ++told[answer(shop.evaluate())];
+    }
+    std::cout << taken << ":";
+    for (const auto& [name, count] : told) std::cout << " " << name << " " << count;
+    std::cout << "\n";
+    if (taken == 1.0)
+      EXPECT_GE(told["worked"], campaigns * 9 / 10);
+    else
+      EXPECT_LE(told["worked"], campaigns * 2 / 100);
   }
 }
 

@@ -65,9 +65,11 @@ struct Plan {
   std::size_t readings = 0;
   double power = 0.0;      ///< distance of the two explanations in standard deviations
   std::string one, other;  ///< names of the two effects
-  std::string of{};        ///< axes of the plan, or what is measured ("EYX"), in space
-  /// Duration including the pause before the measurement, s; only for an axis with times.
+  /// in space axes of the plan, or what is measured ("EYX"); over time the speed that changes
+  std::string of{};
+  /// Duration including the pause before the measurement, s; only for readings with times.
   std::optional<double> duration{};
+  std::optional<double> every{};  ///< time between changes of the speed or load `of`, s
 
   bool separates() const { return power >= enough_power; }
 };
@@ -189,7 +191,8 @@ struct Explanation {
   /// places that contains it or, if none does, the places of the best explanation
   std::vector<Place> fails;
   /// at most three measurements that would separate aliases (for `nothing` those of the first of
-  /// `replaceable`), or two effects that cancel each other
+  /// `replaceable`), or two effects that cancel each other; for a course one for each alias
+  /// of the named effect and of those of `certain`
   std::vector<Plan> plans;
   /// owner of effects that are not in the catalog but are referenced by terms
   std::shared_ptr<const void> keeps{};

@@ -41,7 +41,9 @@ struct Term {
   double price = 0.0;
   /// Share of earlier campaigns of such machines in which the effect was found, if counted.
   std::optional<double> frequency{};
-  /// Weight of a candidate by `frequency`, set by the search (fit/weights.h).
+  /// Median and standard deviation of the RMS that it had there, m or rad; if counted.
+  std::optional<std::pair<double, double>> usual_size{};
+  /// Weight of a candidate by `frequency` and `usual_size`, set by the search (fit/weights.h).
   double weight = 1.0;
   /// Whether the parameters are given: their prediction is subtracted from the readings.
   bool held = false;

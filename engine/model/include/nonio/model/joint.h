@@ -18,6 +18,7 @@ struct Member {
   const Part* part = nullptr;
   std::vector<Term> model;      ///< fitted with separate values for this campaign
   std::vector<Term> catalogue;  ///< terms that are searched
+  std::vector<Term> found{};    ///< the noise is what they leave; they are searched all the same
 };
 
 enum class Holds {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,6 +65,9 @@ struct Observations {
     /// Indices of the lines next to which it was recorded, ascending; empty: next to all. A channel
     /// of several measurements occurs once for each, because their times have different origins.
     std::vector<std::uint32_t> lines{};
+    /// Largest magnitude, in `unit`, to which the parameters of a source relate, where a model of
+    /// other readings is applied; not set: that of `value`.
+    std::optional<double> largest{};
 
     bool is_temperature() const { return unit == "degC"; }
   };

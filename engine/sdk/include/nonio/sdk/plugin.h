@@ -346,7 +346,7 @@ class Registry {
   ~Registry() = default;
 };
 
-#define NONIO_SDK_VERSION 19
+#define NONIO_SDK_VERSION 20
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)

@@ -86,9 +86,10 @@ struct TableKept {
 /// A change between two campaigns of an axis that is a table.
 struct TableLoaded {
   std::string axis;
-  std::string kind;           ///< loaded, removed, wrong-sign, twice, in-addition, offset
+  std::string kind;           ///< loaded, removed, wrong-sign, twice, in-addition, offset, backlash
   std::string table;          ///< date of the source campaign, or the state in the machine record
   int points = 0;             ///< number of points of an offset
+  double backlash = 0.0;      ///< change of the active backlash value, SI
   std::string after, before;  ///< dates of both campaigns
   std::string after_campaign, before_campaign;
   Quantity unit = Quantity::deviation;
@@ -192,15 +193,18 @@ Expected<Artifact> machine_page_of(const SiteHistory& site, const MachineHistory
 Expected<std::vector<Artifact>> site_pages(const SiteHistory&, const Templates&,
                                            const std::string& language);
 
-/// Residuals of one axis in several campaigns, in order of date; one entry per reading, SI and
-/// degC. NaN: not known, or a reading that is not used.
+/// Residuals of one axis in several campaigns, in order of date, or of the parts of one campaign
+/// that a machine made; one entry per reading, SI and degC. NaN: not known, or a reading that is not
+/// used.
 struct JointResiduals {
   std::string name, axis;
   bool rotary = false, angular = false;
-  double noise = 0.0;  ///< standard deviation of a reading, m or rad
-  std::vector<std::string> campaigns;
+  double noise = 0.0;                   ///< standard deviation of a reading, m or rad
+  std::vector<std::string> campaigns;   ///< or the parts that a machine made
   std::vector<std::uint32_t> campaign;  ///< index of the campaign of each reading
   std::vector<double> position, time, temperature, residual;
+  /// Only of parts that a machine made: number of the feature in the order of machining.
+  std::optional<std::vector<double>> made_order{};
 };
 
 /// A page of its own with the residuals over position, time, temperature and order.

@@ -31,11 +31,14 @@
 ///     W = J [diag(k^2/3 + q^2/12) + k k'/3] J'     J: each stop minus the first one
 ///
 /// If the table was made from other readings b0 = E + n_0, f = 2 leaves r = n_a + n_0 - 2 n_b: the
-/// larger p of both cases is used. Derived.
+/// larger p of both cases is used.
+///
+/// If f = 0 fits, f is estimated with V + W as well, and the table has worked only if f + 2 u < 1/2:
+/// a coarse table may fit a = 0 stop by stop while it corrects half of the errors. Derived.
 namespace nonio::math {
 
 struct BeforeAfter {
-  enum class Answer { worked, not_active, wrong_sign, something_else, cannot_tell };
+  enum class Answer { worked, half_left, not_active, wrong_sign, something_else, cannot_tell };
   Answer answer = Answer::cannot_tell;
   std::array<double, 3> p{};  ///< p-values of f = 0, 1, 2
   double f = 0.0, u_f = 0.0;
