@@ -200,7 +200,9 @@ class Next {
   }
 
   void at(const model::Place& place) {
-    if (place.where.has(Factor::time) || place.where.has(Factor::run)) {
+    if (is_circle() && !place.where.has(Factor::run) && !place.where.has(Factor::temperature)) {
+      circle();
+    } else if (place.where.has(Factor::time) || place.where.has(Factor::run)) {
       time(place);
     } else if (place.where.has(Factor::temperature)) {
       add("settle");
@@ -210,6 +212,26 @@ class Next {
     } else {
       add("both-sides");
     }
+  }
+
+  /// Whether each line is sensed in more than one direction, along the radius of its path.
+  bool is_circle() const {
+    const Observations& o = part_.part.table;
+    if (part_.part.kind != model::Part::Kind::space || o.sense.empty()) return false;
+    std::set<std::size_t> lines, paths;
+    for (std::size_t i = 0; i < o.size(); ++i) {
+      lines.insert(o.line_of(i));
+      if (o.sense_of(i) != o.lines[o.line_of(i)].sense) paths.insert(o.line_of(i));
+    }
+    return paths.size() == lines.size();
+  }
+
+  void circle() {
+    const auto& way = part_.part.way;
+    if (std::equal(way.begin() + 1, way.end(), way.begin()))
+      add("circle-other-way");
+    else
+      add("circle-other-radius");
   }
 
   void time(const model::Place& place) {

@@ -196,7 +196,7 @@ void put_after_table(storage::Json& json, const PartModel& part, const model::Fi
 /// interpolated temperatures, channels that are not used, interrupted displacements, time constants
 /// of thermal tests, and noise that is not independent or not constant.
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
-                                     const Campaign& campaign, const ModelWords& words) {
+                                     const ModelWords& words) {
   std::vector<std::string> out;
   for (const std::string& effect : model::below_uncertainty(fit))
     out.push_back(words.below_uncertainty(effect));
@@ -209,11 +209,7 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
   if (part.part.kind == model::Part::Kind::space) {
     if (const auto unstated = model::unstated_positions(part.part); !unstated.empty())
       out.push_back(words.unstated_position(unstated));
-    const auto has = [&](const char* effect) {
-      return std::ranges::any_of(fit.terms, [&](const auto& t) { return t.name() == effect; });
-    };
-    if (has("squareness:XY") && has("yaw:X"))
-      out.push_back(words.squareness_place("squareness:XY", "yaw:X"));
+    for (std::string& said : words.squareness_places(fit)) out.push_back(std::move(said));
   }
   for (const std::string& measurement : part.part.order_assumed)
     out.push_back(words.order_assumed(measurement));
@@ -223,7 +219,6 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
       std::none_of(lines.begin(), lines.end(), [](const auto& l) { return l.body.empty(); });
   if (!part.part.table.order_known && !features) out.push_back(words.order_unknown());
   if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
-  for (std::string& said : words.scales(part, fit, campaign)) out.push_back(std::move(said));
   for (std::string& said : words.recordings(part, fit)) out.push_back(std::move(said));
   for (std::string& said : words.noise(fit, part)) out.push_back(std::move(said));
   return out;
@@ -259,7 +254,10 @@ storage::Json compared_json(const Compared& c, const Campaign& campaign, const M
   json["left"] = places_json(comparison.seats, words, q);
   if (comparison.means > 0) json["means"] = comparison.means;
   json["suspects"] = suspects_json(comparison.suspects, c.part, campaign, words);
-  json["warnings"] = warnings_of(c.part, comparison.fit, campaign, words);
+  std::vector<std::string> warnings = warnings_of(c.part, comparison.fit, words);
+  for (std::string& said : words.scales(c.part, comparison.fit, campaign))
+    warnings.push_back(std::move(said));
+  json["warnings"] = std::move(warnings);
   if (extent == Extent::whole) put_after_table(json, c.part, comparison.fit, q);
   return json;
 }
@@ -476,7 +474,7 @@ storage::Json explained_json(const Explained& e, const Campaign& campaign,
     json["false_alarms"] = words.false_alarms(x.verdict);
   }
   json["suspects"] = suspects_json(x.comparison.suspects, e.part, campaign, words);
-  json["warnings"] = warnings_of(e.part, x.comparison.fit, campaign, words);
+  json["warnings"] = warnings_of(e.part, x.comparison.fit, words);
   if (e.what_if) json["what_if"] = what_if_json(*e.what_if, x.comparison.fit.parameters);
   return json;
 }

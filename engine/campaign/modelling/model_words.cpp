@@ -249,17 +249,26 @@ std::optional<double> common_scale_uncertainty(const model::Part& part, const Ca
 
 std::vector<std::string> ModelWords::scales(const PartModel& part, const model::Fit& fit,
                                             const Campaign& campaign) const {
-  std::vector<std::string> out;
+  std::vector<std::string> known, u_of_known, alone;
   for (const model::Parameter& p : fit.parameters) {
     if (!p.effect.starts_with("scale:") || p.held || p.shape ||
         p.quantity != Quantity::deviation_per_length)
       continue;
     const std::string axis = p.effect.substr(6, p.effect.find('@') - 6);
-    if (const auto u = common_scale_uncertainty(part.part, campaign, axis))
-      out.push_back(says("scale-of-readings", {{"u", *u, p.quantity}}, {{"effect", p.effect}}));
-    else
-      out.push_back(says("scale-of-readings-alone", {}, {{"effect", p.effect}}));
+    if (const auto u = common_scale_uncertainty(part.part, campaign, axis)) {
+      known.push_back(p.effect);
+      u_of_known.push_back(localised(evidence_text({"u", *u, p.quantity}), language_) + " " +
+                           std::string(unit_of(p.quantity).symbol));
+    } else {
+      alone.push_back(p.effect);
+    }
   }
+  std::vector<std::string> out;
+  if (!known.empty())
+    out.push_back(says("scale-of-readings", {},
+                       {{"effects", storage::listed(known)}, {"u", storage::listed(u_of_known)}}));
+  if (!alone.empty())
+    out.push_back(says("scale-of-readings-alone", {}, {{"effects", storage::listed(alone)}}));
   return out;
 }
 
@@ -269,9 +278,36 @@ std::string ModelWords::unstated_position(const std::vector<std::string>& measur
   return says("unstated-position", {}, {{"which", which}});
 }
 
-std::string ModelWords::squareness_place(const std::string& squareness,
-                                         const std::string& yaw) const {
-  return says("squareness-place", {}, {{"effect", squareness}, {"yaw", yaw}});
+std::vector<std::string> ModelWords::squareness_places(const model::Fit& fit) const {
+  // `along` moves with an angle that turns `turned` as the squareness does; names of ISO 230-1
+  struct Turn {
+    const char *squareness, *angle, *along, *turned, *constant;
+  };
+  constexpr Turn turns[] = {{"squareness:XY", "yaw:X", "X", "Y", "C0Y"},
+                            {"squareness:XZ", "pitch:X", "X", "Z", "B0Z"},
+                            {"squareness:XZ", "roll:Y", "Y", "Z", "B0Z"},
+                            {"squareness:YZ", "roll:X", "X", "Z", "A0Z"},
+                            {"squareness:YZ", "pitch:Y", "Y", "Z", "A0Z"}};
+  std::vector<std::string> out;
+  for (const model::Term& term : fit.terms) {
+    std::vector<std::string> angles, along;
+    std::string turned, constant;
+    for (const Turn& turn : turns) {
+      if (term.name() != turn.squareness ||
+          std::ranges::none_of(fit.terms, [&](const auto& t) { return t.name() == turn.angle; }))
+        continue;
+      angles.emplace_back(turn.angle), along.emplace_back(turn.along);
+      turned = turn.turned, constant = turn.constant;
+    }
+    if (!angles.empty())
+      out.push_back(says("squareness-place", {},
+                         {{"effect", term.name()},
+                          {"angles", storage::listed(angles)},
+                          {"along", storage::listed(along)},
+                          {"turned", turned},
+                          {"constant", constant}}));
+  }
+  return out;
 }
 
 std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartModel& part) const {

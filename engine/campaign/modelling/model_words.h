@@ -62,7 +62,8 @@ class ModelWords {
   std::vector<std::string> scales(const PartModel& part, const model::Fit& fit,
                                   const Campaign& campaign) const;
   std::string unstated_position(const std::vector<std::string>& measurements) const;
-  std::string squareness_place(const std::string& squareness, const std::string& yaw) const;
+  /// Where the angle of each squareness applies, if angular errors turn the same axis.
+  std::vector<std::string> squareness_places(const model::Fit& fit) const;
   std::string unmeasured(const std::string& effect) const;
   /// `what` is "is", "size", "appearance", "similar" or "remedy". Returns English text without a
   /// translation, or "".

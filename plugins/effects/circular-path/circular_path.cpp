@@ -4,6 +4,7 @@
 //     circle-centre    part of every model: a n_1 + b n_2, position of the instrument; a, b: m
 //     servo-mismatch   XY, YZ, ZX: w d sin t cos t; w: m, path lag F/Kv of the first axis less that
 //                      of the second: the lag is opposite to the motion, e = -F/Kv v
+//     lateral-play     EYX (e_y when X reverses) and so on: (L/2) n_y d_X, d_X direction of X; L: m
 #include <algorithm>
 
 #include "nonio/sdk/space_readings.h"
@@ -128,6 +129,50 @@ Expected<Effect::Columns> mismatch(const Observations& o, const Axis& place,
   return out;
 }
 
+/// Axis `moved` shifts the other axis of its plane, `error`, by its direction of motion.
+struct Play {
+  const char* name;
+  std::size_t error, moved;
+};
+constexpr Play plays[] = {{"EYX", 1, 0}, {"EXY", 0, 1}, {"EZX", 2, 0},
+                          {"EXZ", 0, 2}, {"EZY", 2, 1}, {"EYZ", 1, 2}};
+
+bool contains(const Plane& plane, const Play& play) {
+  return (plane.first == play.error && plane.second == play.moved) ||
+         (plane.first == play.moved && plane.second == play.error);
+}
+
+std::vector<std::string> plays_in(const Observations& o) {
+  std::vector<std::string> names;
+  if (o.sense.empty()) return names;
+  const SpaceReadings s = space_of(o);
+  for (const Play& play : plays)
+    for (std::size_t line = 0; line < o.lines.size(); ++line)
+      if (const Plane* plane = circle_plane(o, s, line);
+          plane != nullptr && contains(*plane, play)) {
+        names.emplace_back(play.name);
+        break;
+      }
+  return names;
+}
+
+Expected<Effect::Columns> lateral_play(const Observations& o, const Axis& place,
+                                       const std::vector<double>&) {
+  const SpaceReadings s = space_of(o);
+  Effect::Columns out(1, std::vector<double>(o.size(), 0.0));
+  for (const Play& play : plays)
+    for (std::size_t line = 0; line < o.lines.size() && place.name == play.name; ++line) {
+      const Plane* plane = circle_plane(o, s, line);
+      if (plane == nullptr || !contains(*plane, play)) continue;
+      for (const auto& axis : o.axes)
+        if (!axis.rotary && coordinate_of(axis.axis) == play.moved)
+          for (const std::size_t i : rows_of(o, line))
+            if (i < axis.approach.size())
+              out[0][i] = 0.5 * axis.approach[i] * o.sense_of(i)[play.error];
+    }
+  return out;
+}
+
 }  // namespace
 
 NONIO_PLUGIN(registry) {
@@ -148,6 +193,13 @@ NONIO_PLUGIN(registry) {
       .applies = always,
       .columns = mismatch,
       .instances = mismatches});
+  registry.add(Effect{
+      .info = {"lateral-play", "1.0.0", "An axis that shifts another axis where it reverses"},
+      .linear = {{"L", "shift by the reversal", Quantity::deviation}},
+      .shapes = {},
+      .applies = always,
+      .columns = lateral_play,
+      .instances = plays_in});
 }
 
 }  // namespace nonio::circular_path

@@ -106,13 +106,15 @@ Expected<Observations> read_rows_of(const ReadInput& input, const Circle& circle
   obs.axes = {{circle.first, false, {}, {}}, {circle.second, false, {}, {}}};
   const auto& deviation = *table.column("deviation_um");
   std::uint64_t arcs = 0;
+  std::map<int, std::size_t> line_of;
   for (const auto& [key, rows] : runs_of(table)) {
     const auto [run, direction] = key;
     NONIO_TRY(const auto kept,
               evaluated(table, rows, direction, m.over_travel.value_or(0.0) / circle_deg));
     arcs += rows.size() - kept.size();
-    Observations::Line line{
-        m.id + (direction > 0 ? " +" : " -") + (run == 1 ? "" : " run " + std::to_string(run)), {}};
+    // Runs in one direction are one line, so that they repeat each other.
+    const auto [line, fresh] = line_of.try_emplace(direction, obs.lines.size());
+    if (fresh) obs.lines.push_back({m.id + (direction > 0 ? " +" : " -"), {}});
     for (const std::size_t row : kept) {
       if (!std::isfinite(deviation[row])) {
         ++obs.missing;
@@ -120,12 +122,11 @@ Expected<Observations> read_rows_of(const ReadInput& input, const Circle& circle
       }
       put_row(obs, circle, (*table.column("angle_deg"))[row] * circle_deg, direction,
               deviation[row] * 1e-6);
-      obs.line.push_back(static_cast<std::uint32_t>(obs.lines.size()));
+      obs.line.push_back(static_cast<std::uint32_t>(line->second));
       obs.run.push_back(run);
       put_further_columns(obs, table, row);
+      obs.lines[line->second].sense = obs.sense.back();
     }
-    if (!obs.sense.empty()) line.sense = obs.sense.back();
-    obs.lines.push_back(std::move(line));
   }
   if (arcs > 0) obs.notes.push_back({"csv.over-travel", {count("rows", arcs)}});
   return complete(std::move(obs));

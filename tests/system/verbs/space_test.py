@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """compare, explain, model on machines with several axes: the samples' stories, what is refused."""
 import json
+import math
 import pathlib
+import random
 import re
 import shutil
 import unittest
@@ -161,6 +163,39 @@ class Space(VerbTest):
                 self.assertGreater(wave["rms_um"], 0.99 * before)
                 if said["verdict"]["kind"] == "missing":
                     self.assertEqual(said["verdict"]["effect"], first["effect"])
+
+    def circle(self, runs=(1, 2), ways=(1, -1), lateral_um=0.0, backlash_um=0.0):
+        """Readings of a ball bar of 150 mm; scatter of 0.2 um, fixed seed."""
+        self.sample("40-circles")
+        drawn = random.Random(4)
+        rows = ["run,direction,angle_deg,deviation_um"]
+        for run in runs:
+            for way in ways:
+                for angle in range(2, 362, 4)[::way]:
+                    t = math.radians(angle)
+                    towards_x = math.copysign(1, -way * math.sin(t))  # X moves in this direction
+                    value = (lateral_um * math.sin(t) + backlash_um * math.cos(t)) * towards_x / 2 + drawn.gauss(0, 0.2)
+                    rows.append(f"{run},{'+' if way > 0 else '-'},{angle},{value:.3f}")
+        (self.folder / "circle.csv").write_text("\n".join(rows) + "\n")
+
+    def test_runs_of_a_circle_repeat_each_other(self):
+        self.circle(backlash_um=6)
+        said = self.part("explain")
+        self.assertLess(abs(said["noise_floor_um"] - 0.2), 0.04)
+        self.assertEqual(said["verdict"]["effect"], "backlash:X")
+
+    def test_lateral_play_is_found_in_circles(self):
+        self.circle(lateral_um=6)
+        said = self.part("explain")
+        self.assertEqual((said["verdict"]["kind"], said["verdict"]["effect"]), ("missing", "lateral-play:EYX"))
+        value, = said["candidates"][0]["parameters"]
+        self.assertLess(abs(value["value"] - 6), 0.2)
+
+    def test_a_circle_is_not_told_to_be_read_at_other_targets(self):
+        self.sample("41-circle-one-way")
+        said = " ".join(self.part("explain")["next"])
+        self.assertIn("in the other direction", said)
+        self.assertNotIn("targets", said)
 
     def test_states_of_the_machine_are_not_mixed(self):
         self.sample("13-gantry-diagonals")

@@ -86,7 +86,8 @@ const std::vector<std::string> kinds_in_space = {
 const std::vector<std::string> kinds_of_channels = {
     "heat",        "heat-difference",  "heat-growth", "heat-slow",
     "heat-source", "heat-source-slow", "settling"};
-const std::vector<std::string> kinds_of_circles = {"circle-centre", "servo-mismatch"};
+const std::vector<std::string> kinds_of_circles = {"circle-centre", "servo-mismatch",
+                                                   "lateral-play"};
 const std::vector<std::string> descriptions = {"free-position", "free-reversal", "free-time",
                                                "free-growth"};
 
