@@ -218,9 +218,9 @@ Method part() {
        {.name = "order",
         .default_value = std::string(),
         .unit = "",
-        .help = "Order of the rows: that in which the machine made the features (as-listed), or "
-                "unknown. Residuals are shown over it.",
-        .choices = {"as-listed", "unknown"}}}};
+        .help = "Order of the rows: that in which the machine made the features (as-listed), over "
+                "which residuals are shown, or unknown; pendulum is unknown too.",
+        .choices = {"pendulum", "as-listed", "unknown"}}}};
   using Role = Method::Column::Role;
   m.columns = {{nominal[0], Quantity::length, Role::none, "Nominal place of the feature, X."},
                {nominal[1], Quantity::length, Role::none, "The same, Y."},

@@ -72,7 +72,7 @@ class Together(unittest.TestCase):
         named = {e["effect"]: e for e in self.answer()["effects"]}
         self.assertIn("backlash:X", named)
         value = named["backlash:X"]["parameters"][0]
-        self.assertLess(abs(value["value"] + 1.5), 4 * value["u"] + 0.05, value)
+        self.assertLess(abs(value["value"] - 1.5), 4 * value["u"] + 0.05, value)
 
     def test_an_effect_of_half_the_noise_that_all_have(self):
         fleet.fleet(self.site, "shared", "backlash:X", 0.5, 12, 0.0, self.rng)
