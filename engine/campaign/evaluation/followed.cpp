@@ -147,24 +147,26 @@ bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
          (effect == fit.effects.end() || !effect->curve);
 }
 
-/// The parameter of a source is the effect of its largest value, the shift by a temperature that in
-/// the middle of the targets.
-std::vector<std::pair<std::string, double>> conditions_of(const ModelFit& fit, Quantity of) {
+/// Model of a parameter. That of a source is the effect of its largest value, which must be equal.
+std::string model_of(const ModelFit& fit, Quantity of) {
   constexpr int digits = 3;  // measured speeds are never equal
-  std::vector<std::pair<std::string, double>> out;
+  std::string out = effects_of(fit);
+  if (of != Quantity::deviation && of != Quantity::angular_deviation) return out;
   for (const ModelFit::Channel& c : fit.channels) {
-    if (!c.used || c.unit == "degC" ||
-        (of != Quantity::deviation && of != Quantity::angular_deviation))
-      continue;
+    if (!c.used || c.unit == "degC") continue;
     double largest = 0.0;
     for (const double v : c.values) largest = std::max(largest, std::fabs(v));
-    out.emplace_back(c.name + "_up_to", std::stod(short_text(largest, digits)));
-  }
-  if (fit.channels.empty() && !fit.target.empty() && of == Quantity::deviation_per_kelvin) {
-    const auto [from, to] = std::minmax_element(fit.target.begin(), fit.target.end());
-    out = {{"from", printed(*from, Quantity::length)}, {"to", printed(*to, Quantity::length)}};
+    out += "; " + c.name + " up to " + short_text(largest, digits) + " " + c.unit;
   }
   return out;
+}
+
+/// A shift by a temperature is that in the middle of the targets.
+std::vector<std::pair<std::string, double>> range_of(const ModelFit& fit, Quantity of) {
+  if (!fit.channels.empty() || fit.target.empty() || of != Quantity::deviation_per_kelvin)
+    return {};
+  const auto [from, to] = std::minmax_element(fit.target.begin(), fit.target.end());
+  return {{"from", printed(*from, Quantity::length)}, {"to", printed(*to, Quantity::length)}};
 }
 
 std::optional<FollowedGroup> of_model(const ModelFit& fit, const Campaign& campaign) {
@@ -183,8 +185,8 @@ std::optional<FollowedGroup> of_model(const ModelFit& fit, const Campaign& campa
          .value = p.value,
          .quantity = p.quantity,
          .u = *p.u,
-         .numbers = conditions_of(fit, p.quantity),
-         .texts = {{"model", effects_of(fit)}}});
+         .numbers = range_of(fit, p.quantity),
+         .texts = {{"model", model_of(fit, p.quantity)}}});
     FollowedQuantity& q = out.quantities.back();
     for (const Measurement& m : campaign.measurements)
       if (m.id == q.measurement) q.state = found_or_left(m);
