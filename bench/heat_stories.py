@@ -282,7 +282,7 @@ def further_test(plan, rng):
 
 
 def confuses(answer, pair):
-    """Whether an effect that is named or significant stands for both."""
+    """Whether the readings cannot distinguish the two effects of the pair, of which one is named or significant."""
     of = {answer["verdict"].get("effect"), *answer["significant"]}
     return any(set(pair) <= {c["effect"], *c["aliases"]} for c in answer["candidates"] if c["effect"] in of)
 

@@ -281,31 +281,30 @@ std::string ModelWords::unstated_position(const std::vector<std::string>& measur
 std::vector<std::string> ModelWords::squareness_places(const model::Fit& fit) const {
   // `along` moves with an angle that turns `turned` as the squareness does; names of ISO 230-1
   struct Turn {
-    const char *squareness, *angle, *along, *turned, *constant;
+    const char *squareness, *angle, *along, *turned;
   };
-  constexpr Turn turns[] = {{"squareness:XY", "yaw:X", "X", "Y", "C0Y"},
-                            {"squareness:XZ", "pitch:X", "X", "Z", "B0Z"},
-                            {"squareness:XZ", "roll:Y", "Y", "Z", "B0Z"},
-                            {"squareness:YZ", "roll:X", "X", "Z", "A0Z"},
-                            {"squareness:YZ", "pitch:Y", "Y", "Z", "A0Z"}};
+  constexpr Turn turns[] = {{"squareness:XY", "yaw:X", "X", "Y"},
+                            {"squareness:XZ", "pitch:X", "X", "Z"},
+                            {"squareness:XZ", "roll:Y", "Y", "Z"},
+                            {"squareness:YZ", "roll:X", "X", "Z"},
+                            {"squareness:YZ", "pitch:Y", "Y", "Z"}};
   std::vector<std::string> out;
   for (const model::Term& term : fit.terms) {
     std::vector<std::string> angles, along;
-    std::string turned, constant;
+    std::string turned;
     for (const Turn& turn : turns) {
       if (term.name() != turn.squareness ||
           std::ranges::none_of(fit.terms, [&](const auto& t) { return t.name() == turn.angle; }))
         continue;
       angles.emplace_back(turn.angle), along.emplace_back(turn.along);
-      turned = turn.turned, constant = turn.constant;
+      turned = turn.turned;
     }
     if (!angles.empty())
       out.push_back(says("squareness-place", {},
                          {{"effect", term.name()},
                           {"angles", storage::listed(angles)},
                           {"along", storage::listed(along)},
-                          {"turned", turned},
-                          {"constant", constant}}));
+                          {"turned", turned}}));
   }
   return out;
 }
