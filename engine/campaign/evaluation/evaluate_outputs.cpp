@@ -84,12 +84,15 @@ void note_not_in_format(const Campaign& campaign, const std::string& controller,
 
 std::vector<WantedController> with_control(const Work& work, std::vector<WantedController> wanted) {
   const std::string& control = work.campaign().machine.control;
-  std::vector<Remark> noted;
+  const auto is_there = [&](const WantedController& w) {
+    return w.controller->info.name == control;
+  };
+  if (std::any_of(wanted.begin(), wanted.end(), is_there)) return wanted;
   for (const Controller& c : work.context.plugins->controllers()) {
-    if (c.info.name != control || std::any_of(wanted.begin(), wanted.end(),
-                                              [&](const auto& w) { return w.controller == &c; }))
-      continue;
-    if (auto options = settle_controller(work, c.info, noted))
+    if (c.info.name != control) continue;
+    if (auto options =
+            config::settle_table_options(c.info, work.context.site.options, *work.read.manifest,
+                                         work.read.machine ? &*work.read.machine : nullptr))
       wanted.push_back({&c, std::move(*options), false});
   }
   return wanted;

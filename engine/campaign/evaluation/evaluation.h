@@ -139,7 +139,8 @@ struct WantedPlugins {
   std::vector<WantedOutput> outputs;
 };
 WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes);
-/// Adds the control of the machine, whose tables are recorded even if no new ones are written.
+/// Adds the control of the machine, whose tables are recorded even if no new ones are written. Wrong
+/// options of a control without output are no error.
 std::vector<WantedController> with_control(const Work& work, std::vector<WantedController> wanted);
 void write_tables(const Work& work, const std::vector<WantedController>& wanted,
                   const Doubts& doubts, Results& results);
