@@ -394,10 +394,10 @@ static void name_cause(const reports::TableLoaded& t, reports::HistoryChange& c)
 
 /// Whether the mean reversal changed by as much as the active backlash value, up to its uncertainty
 /// and a tenth for steps of the control.
-static bool explains(const reports::TableLoaded& t, const HistorySeries& s,
+static bool explains(const BacklashChange& b, const HistorySeries& s,
                      const reports::HistoryChange& c) {
-  return s.quantity == "B_mean" && is_at(t, s.axis, c) &&
-         std::fabs(c.size - t.backlash) <= 2.0 * c.u + 0.1 * std::fabs(t.backlash);
+  return s.quantity == "B_mean" && is_at(b.between, s.axis, c) &&
+         std::fabs(c.size - b.change) <= 2.0 * c.u + 0.1 * std::fabs(b.change);
 }
 
 reports::MachineHistory describe(const AssessedMachine& machine, const fs::path& out,
@@ -426,12 +426,10 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
     for (HistorySeries& s : m.series)
       for (reports::HistoryChange& c : s.changes)
         if (is_at(t, s.axis, c)) name_cause(t, c);
-  for (const reports::TableLoaded& t : backlash_changes(machine)) {
+  for (const BacklashChange& b : backlash_changes(machine))
     for (HistorySeries& s : m.series)
       for (reports::HistoryChange& c : s.changes)
-        if (explains(t, s, c)) name_cause(t, c);
-    m.tables_loaded.push_back(t);
-  }
+        if (explains(b, s, c)) c.cause = "table", c.event = "table-backlash";
   return m;
 }
 

@@ -125,7 +125,7 @@ class OfMachine {
 
   bool is_fault(const std::string& axis, const HistoryChange& c) const {
     return std::any_of(d_.tables_loaded.begin(), d_.tables_loaded.end(), [&](const auto& t) {
-      return t.kind != "loaded" && t.kind != "removed" && t.kind != "backlash" && is_at(t, axis, c);
+      return t.kind != "loaded" && t.kind != "removed" && is_at(t, axis, c);
     });
   }
 
@@ -388,8 +388,7 @@ class OfMachine {
   /// unless the axis was repaired or compensated later.
   void loaded() {
     std::map<std::string, const reports::TableLoaded*> last;
-    for (const reports::TableLoaded& t : d_.tables_loaded)
-      if (t.kind != "backlash") last[t.axis] = &t;
+    for (const reports::TableLoaded& t : d_.tables_loaded) last[t.axis] = &t;
     for (const auto& [axis, t] : last) {
       const bool is_right = t->kind == "loaded" || t->kind == "removed";
       if ((is_right && (t->is_stated || is_declared(*t))) || is_repaired(axis, t->before)) continue;

@@ -123,15 +123,12 @@ class LoadedOnAxis {
     return out;
   }
 
-  std::vector<reports::TableLoaded> backlash_changes() const {
-    std::vector<reports::TableLoaded> out;
+  std::vector<BacklashChange> backlash_changes() const {
+    std::vector<BacklashChange> out;
     for (std::size_t i = 0; i + 1 < all_.size(); ++i) {
       const Taken &before = all_[i], &after = all_[i + 1];
-      if (!before.backlash || !after.backlash || *before.backlash == *after.backlash) continue;
-      out.push_back(of_pair(before, after));
-      out.back().kind = "backlash", out.back().is_stated = true;
-      out.back().backlash = *after.backlash - *before.backlash;
-      out.back().rms = out.back().left = std::numeric_limits<double>::quiet_NaN();
+      if (before.backlash && after.backlash && *before.backlash != *after.backlash)
+        out.push_back({of_pair(before, after), *after.backlash - *before.backlash});
     }
     return out;
   }
@@ -286,10 +283,10 @@ std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& m) {
   return out;
 }
 
-std::vector<reports::TableLoaded> backlash_changes(const AssessedMachine& m) {
-  std::vector<reports::TableLoaded> out;
+std::vector<BacklashChange> backlash_changes(const AssessedMachine& m) {
+  std::vector<BacklashChange> out;
   for (auto& [axis, all] : by_axis(m))
-    for (reports::TableLoaded& one : LoadedOnAxis(m, axis, std::move(all)).backlash_changes())
+    for (BacklashChange& one : LoadedOnAxis(m, axis, std::move(all)).backlash_changes())
       out.push_back(std::move(one));
   return out;
 }

@@ -21,8 +21,12 @@ inline constexpr double change_resolution = 0.1;
 /// removing a table, from `control_tables` in results.json. The last eight known tables are tried:
 /// those written by or active in earlier campaigns and those in the machine record.
 std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& machine);
-/// Returns the pairs of successive campaigns of an axis that state different active backlash values.
-std::vector<reports::TableLoaded> backlash_changes(const AssessedMachine& machine);
+/// Two successive campaigns of an axis that state different active backlash values.
+struct BacklashChange {
+  reports::TableLoaded between;  ///< axis, dates and campaigns
+  double change = 0.0;           ///< m or rad
+};
+std::vector<BacklashChange> backlash_changes(const AssessedMachine& machine);
 /// Returns the pairs of successive campaigns of an axis of which one does not state the active
 /// table.
 std::vector<reports::TableLoaded> tables_unstated(const AssessedMachine& machine);

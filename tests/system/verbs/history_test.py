@@ -9,6 +9,8 @@ import unittest
 
 from verbs import NONIO, VerbTest, manifest, readings
 
+BUDGET = ("[instrument]\nU_fixed_um = 0.2\nU_per_m_um = 0.5\n[environment]\nmisalignment_mm = 0.5\ntemperature_range_K = 0.2\n"
+          "temperature_difference_K = 1.0\nexpansion_range_um_per_m_K = 2.0\ndrift_um = 0.4\n")
 MACHINE = '[machine]\nasset = "S-0042"\nmaker = "Sample"\nserial = "417"\n'
 
 
@@ -68,6 +70,37 @@ class HistoryVerbs(VerbTest):
         for refused in (("list", self.out, "S-0042", "--quantity", "A"), ("history", self.out, "S-0042"),
                         ("event", self.site, "--machine", "S-0042", "--kind", "crash", "--text", "hit", "--out", self.out)):
             self.assertIn('no machine "S-0042"', self.nonio("machine", *refused, expect=2).stderr)
+
+    def years(self, stated, tolerance, effects):
+        """One campaign a half-year, with its active backlash value, its tolerances and what it measures."""
+        (self.site / "site.toml").write_text('[run]\nanalyses = ["iso230-2"]\noutputs = []\n')
+        for k, (value, limit, of) in enumerate(zip(stated, tolerance, effects)):
+            name, day = f"c{k}", f"{2022 + k // 2}-0{1 + 6 * (k % 2)}-10"
+            self.write(name, day, k + 1, MACHINE + 'control = "siemens-840d"\n', noise=0.1, **of)
+            file = self.site / name / "campaign.toml"
+            file.write_text(file.read_text().replace('active_backlash_mm = "none"\n', f"active_backlash_mm = {value}\nexpansion_um_per_m_K = 11.5\n{limit}")
+                            + BUDGET)
+        self.night()
+        lines = json.loads((self.out / "summary.json").read_text())["lines"]
+        return [line for line in lines if line["kind"] in ("changed", "out")], lines
+
+    def test_a_reversal_that_follows_the_stated_backlash_value_is_no_fault(self):
+        stated, measured = [0.0044] * 5 + ['"none"'], [-0.6] * 5 + [-5.0]
+        found, _ = self.years(stated, [""] * 6, [{"backlash": b} for b in measured])
+        self.assertEqual(found, [])
+        history = self.nonio("machine", "history", self.out, "S-0042", "--axis", "X", "--quantity", "B_mean").stdout
+        self.assertIn("another backlash value active", history)
+
+    def test_a_reversal_that_changes_by_more_than_the_stated_value_is_a_fault(self):
+        stated, measured = [0.0044] * 5 + ['"none"'], [-0.6] * 5 + [-12.0]
+        found, lines = self.years(stated, [""] * 6, [{"backlash": b} for b in measured])
+        self.assertEqual([line["kind"] for line in found], ["changed"], lines)
+
+    def test_a_last_value_without_a_limit_is_told_beside_the_judged_one(self):
+        limit = "tolerance_um = { B = 8.0 }\n"
+        found, lines = self.years(['"none"'] * 4, [limit] * 3 + [""], [{"backlash": b} for b in (-10, -10, -10, -1)])
+        said = " ".join(line["says"] for line in found)
+        self.assertIn("Did not conform to the tolerance limit of 8.00 um when it was last judged. On 2023-07-10, 1.", said, lines)
 
     def test_query_says_what_is_wrong(self):
         self.assertIn("nonio run SITE", self.nonio("machine", "list", self.site, expect=2).stderr)

@@ -86,10 +86,9 @@ struct TableKept {
 /// A change between two campaigns of an axis that is a table.
 struct TableLoaded {
   std::string axis;
-  std::string kind;           ///< loaded, removed, wrong-sign, twice, in-addition, offset, backlash
+  std::string kind;           ///< loaded, removed, wrong-sign, twice, in-addition, offset
   std::string table;          ///< date of the source campaign, or the state in the machine record
   int points = 0;             ///< number of points of an offset
-  double backlash = 0.0;      ///< change of the active backlash value, SI
   std::string after, before;  ///< dates of both campaigns
   std::string after_campaign, before_campaign;
   Quantity unit = Quantity::deviation;
