@@ -29,27 +29,23 @@ constexpr double moves_too = 0.9;  // correlation from which on a load is not ch
 constexpr double follows = 0.7, does_not_follow = 0.95;
 constexpr double clear_rms = 1.1, of_95_percent = 1.645;
 
-/// Linear interpolation, constant beyond both ends.
-double at(const std::vector<double>& time, const std::vector<double>& value, double t) {
-  const auto next = std::lower_bound(time.begin(), time.end(), t) - time.begin();
-  if (next == 0) return value.front();
-  if (next == static_cast<std::ptrdiff_t>(time.size())) return value.back();
-  const auto i = static_cast<std::size_t>(next);
-  const double step = time[i] - time[i - 1];
-  return step > 0.0 ? value[i - 1] + (value[i] - value[i - 1]) * (t - time[i - 1]) / step
-                    : value[i];
+/// Values of `c` at the times, interpolated linearly, constant beyond both ends.
+std::vector<double> values_at(const Channel& c, const std::vector<double>& time) {
+  std::vector<double> out = lagged(c, 0.0, time);
+  for (double& v : out) v += c.value.front();
+  return out;
 }
 
 double correlation(const Channel& a, const Channel& b) {
-  double na = 0.0, ma = 0.0, mb = 0.0, aa = 0.0, ab = 0.0, bb = 0.0;
-  for (const double x : a.value) na += 1.0, ma += std::fabs(x);
-  for (const double t : a.time) mb += std::fabs(at(b.time, b.value, t));
-  for (std::size_t i = 0; i < a.value.size(); ++i) {
-    const double da = std::fabs(a.value[i]) - ma / na,
-                 db = std::fabs(at(b.time, b.value, a.time[i])) - mb / na;
-    aa += da * da, ab += da * db, bb += db * db;
-  }
-  return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
+  const auto about_mean = [&](const Channel& c) {
+    const std::vector<double> values = values_at(c, a.time);
+    const Eigen::ArrayXd size =
+        Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Index>(values.size())).abs();
+    return Eigen::ArrayXd(size - size.mean());
+  };
+  const Eigen::ArrayXd x = about_mean(a), y = about_mean(b);
+  const double sizes = std::sqrt(x.square().sum() * y.square().sum());
+  return sizes > 0.0 ? (x * y).sum() / sizes : 0.0;
 }
 
 /// A speed or load, with its recorded values nearest to 0 and farthest from it.
@@ -163,12 +159,9 @@ class CoursePlans {
     const std::size_t step = (o_.size() + most_rows - 1) / most_rows;
     for (std::size_t i = 0; i < o_.size(); i += step) part.table.time.push_back(o_.time[i]);
     part.table.deviation = lagged(c, 0.0, part.table.time);
-    for (const Source& source : sources_) {
-      Channel thinned{source.channel->name, source.channel->unit, part.table.time, {}};
-      for (const double s : thinned.time)
-        thinned.value.push_back(at(source.channel->time, source.channel->value, s));
-      part.table.channels.push_back(std::move(thinned));
-    }
+    for (const Source& source : sources_)
+      part.table.channels.push_back({source.channel->name, source.channel->unit, part.table.time,
+                                     values_at(*source.channel, part.table.time)});
     const CourseData data(part);
     auto fit = fit_course(data, terms);
     for (; !fit && terms.size() > 1; fit = fit_course(data, terms))

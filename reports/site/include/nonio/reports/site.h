@@ -202,7 +202,7 @@ struct JointResiduals {
   std::vector<std::string> campaigns;   ///< or the parts that a machine made
   std::vector<std::uint32_t> campaign;  ///< index of the campaign of each reading
   std::vector<double> position, time, temperature, residual;
-  /// Only of parts that a machine made: number of the feature in the order of machining.
+  /// Only of parts that a machine made: number of the coordinate in the order of machining.
   std::optional<std::vector<double>> made_order{};
 };
 
