@@ -157,13 +157,17 @@ class SeriesChart {
   std::string line(const std::string& text) const { return wrapped(text, 2, width_, 2); }
 
   std::string head() const {
-    std::string text = printable(s_.axis) + (s_.axis.empty() ? "" : "  ") +
+    std::string text = printable(s_.axis) + (s_.line.empty() ? "" : " " + printable(s_.line)) +
+                       (s_.axis.empty() ? "" : "  ") +
                        printable(reports::followed_quantity(words_, s_.quantity)) + " (" +
                        printable(s_.quantity) + ")" +
                        (numbers_.unit().empty() ? "" : ", " + numbers_.unit());
     if (!s_.model.empty())
       text +=
-          ": " + words_.get_or("history.model." + s_.model, s_.model) +
+          ": " +
+          words_.get_or("history.model." + s_.model +
+                            (s_.model == "level" && !s_.changes.empty() ? "-with-events" : ""),
+                        s_.model) +
           (reports::is_log_of_scatter(s_.quantity) ? "" : "; " + words_.get("history.comparison"));
     if (s_.ended) text += " (" + words_.get("history.ended") + ")";
     std::string out = wrapped(text, 0, width_, 2);

@@ -148,8 +148,8 @@ void add_numbers(View& view, const Page& page, const HistorySeries& s,
 }
 
 std::string title_of(const Page& page, const HistorySeries& s) {
-  const std::string title =
-      (s.axis.empty() ? "" : s.axis + " · ") + quantity_text(page, s.quantity);
+  std::string title = (s.axis.empty() ? "" : s.axis + " · ") + quantity_text(page, s.quantity);
+  if (!s.line.empty()) title += ", " + s.line;
   if (!s.ended || s.points.empty()) return title;
   return title + ", " + page.words.get("site.until", {{"date", s.points.back().date}});
 }

@@ -279,7 +279,7 @@ class Assessment::State {
                                            : store_.campaign(m.alone, until_));
     AssessedMachine read{m.state, std::move(stored), m.events, {}, {}};
     if (m.alone.empty()) read.followed = followed_series(read.stored, read.events);
-    read.shown = shown_series(read.stored);
+    read.shown = shown_series(read.stored, read.events);
     m.kept.series.resize(read.followed.size());
     if (!m.fits) m.fits = Fits::of(kept_.trends_of(m.key()));
     for (std::size_t k = 0; k < read.followed.size(); ++k)

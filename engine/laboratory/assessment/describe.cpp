@@ -111,7 +111,7 @@ class Describing {
                       .unit = q,
                       .points = {},
                       .model = name_of(s.trend.model)};
-    out.ended = s.ended;
+    out.ended = s.ended, out.line = s.line;
     if (s.over)
       out.compared_over = {si(s.over->from, out.position()), si(s.over->to, out.position())};
     for (const FollowedSeries::Apart& a : s.apart) {
@@ -169,6 +169,10 @@ class Describing {
       if (!out.forecast) continue;
       out.forecast->value = std::fabs(out.forecast->value) + si(limit->beyond.value, q);
       out.forecast->u = std::hypot(out.forecast->u, si(limit->beyond.u, q));
+    }
+    if (const auto limit = limit_of(m_, s); !out.forecast && limit) {
+      out.forecast = forecast(*s.course, q, limit);
+      if (out.forecast) out.forecast->u = std::hypot(out.forecast->u, si(limit->beyond.u, q));
     }
     return out;
   }
@@ -380,6 +384,35 @@ std::optional<FollowedLimit> limit_of(const AssessedMachine& machine,
   return of_B ? of_B : own;
 }
 
+std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const ShownSeries& s) {
+  const auto follows = [&](const FollowedSeries& f) {
+    const auto limit =
+        f.ended || f.axis != s.axis || f.unit != s.unit ? std::nullopt : limit_of(machine, f);
+    return limit && limit->quantity == s.quantity;
+  };
+  if (s.ended || !s.course ||
+      std::any_of(machine.followed.begin(), machine.followed.end(), follows))
+    return std::nullopt;
+  // The mean of several campaigns is not known better than one of them: they share systematic parts.
+  return FollowedLimit{s.quantity, *machine.stored.results[s.judged.back()].tolerance,
+                       kernel::Beyond{0.0, s.course->series.points.back().u}};
+}
+
+/// The date is kept only if each quantity of the axis with a limit keeps its limit.
+static void decide_date(std::vector<HistorySeries>& all) {
+  std::set<std::string> kept_not;
+  for (const HistorySeries& s : all)
+    if (s.limit && !s.ended && !(s.forecast && s.forecast->answer == "keep"))
+      kept_not.insert(axis_of(s.axis, s.quantity));
+  for (HistorySeries& s : all)
+    if (s.forecast && s.forecast->answer == "keep") {
+      if (!s.limit)
+        s.forecast->answer = "expected";
+      else if (kept_not.contains(axis_of(s.axis, s.quantity)))
+        s.forecast->answer = "other-decides";
+    }
+}
+
 bool is_at(const reports::TableLoaded& t, const std::string& axis,
            const reports::HistoryChange& c) {
   return t.axis == axis && c.after <= t.before && c.before >= t.after &&
@@ -421,6 +454,7 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
   const Describing describing(machine, out, due, today);
   for (const FollowedSeries& s : machine.followed) m.series.push_back(describing.of(s));
   for (const ShownSeries& s : machine.shown) m.series.push_back(describing.of(s));
+  decide_date(m.series);
   m.tables_loaded = tables_loaded(machine), m.tables_unstated = tables_unstated(machine);
   for (const reports::TableLoaded& t : m.tables_loaded)
     for (HistorySeries& s : m.series)

@@ -50,6 +50,8 @@ struct FollowedLimit {
 /// Returns the limit of the quantity; for B_mean that of B, if both were measured together since
 /// the last significant change. std::nullopt without a limit.
 std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
+/// std::nullopt also if a followed quantity has this limit.
+std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const ShownSeries& series);
 
 /// Whether the table was loaded on this axis between dates that overlap with those of the change.
 bool is_at(const reports::TableLoaded& table, const std::string& axis,

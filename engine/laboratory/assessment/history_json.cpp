@@ -46,6 +46,7 @@ class HistoryWriter {
     json_.member("machine", machine);
     json_.member("axis", s.axis);
     json_.member("quantity", s.quantity);
+    if (!s.line.empty()) json_.member("line", s.line);
     json_.member("unit", unit_of(s.unit).symbol);
     if (s.ended) json_.member("ended", true);
     if (s.compared_over) {

@@ -157,7 +157,7 @@ Expected<HistorySoFar> history_so_far(const fs::path& out, const HistoryBasis& b
       {{basis.machine, 0, {}}, campaigns_up_to(all, basis), basis.events, {}, {}}};
   AssessedMachine& m = one.front();
   m.followed = followed_series(m.stored, m.events);
-  m.shown = shown_series(m.stored);
+  m.shown = shown_series(m.stored, m.events);
   Fits fits;
   learn(one, fits);
   find_changes(one, {}, fits, [] {});

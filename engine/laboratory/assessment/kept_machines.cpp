@@ -46,7 +46,7 @@ using storage::Database;
 constexpr const char* kept_folder = ".nonio";
 constexpr const char* machines_name = "machines.sqlite";
 /// Must change if a version of the program may compute other results or trends.
-constexpr std::string_view machines_version = "13 " NONIO_VERSION, trends_version = "5";
+constexpr std::string_view machines_version = "14 " NONIO_VERSION, trends_version = "6";
 constexpr std::size_t digest_size = 64;
 constexpr double patience = 5.0;  // s; without the file, everything is computed again
 

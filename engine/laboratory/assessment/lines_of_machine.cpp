@@ -96,10 +96,10 @@ class OfMachine {
       std::string repaired;
       for (const HistoryChange& c : s.changes)
         if (is_correction(c) && !is_fault(s.axis, c)) repaired = std::max(repaired, c.before);
-      for (const HistoryChange& c : s.changes)
-        if (c.cause != "instrument" && !is_correction(c) && !is_fault(s.axis, c) &&
-            c.before > repaired && !is_repaired(s.axis, c.before) && !is_undone(s, c))
-          put_change(axis_of(s.axis, s.quantity), s, c);
+      for (const HistoryChange* c : lasting(s))
+        if (c->cause != "instrument" && !is_correction(*c) && !is_fault(s.axis, *c) &&
+            c->before > repaired && !is_repaired(s.axis, c->before, &s, c))
+          put_change(axis_of(s.axis, s.quantity), s, *c);
     }
     for (auto& [axis, all] : causes_)
       for (AxisChange& cause : all)
@@ -107,20 +107,24 @@ class OfMachine {
                          [](const auto& a, const auto& b) { return a.size() > b.size(); });
   }
 
-  /// Whether the changes from `c` on, or those up to it, cancel within their uncertainty: a step that
-  /// was undone, or the step that undid it, does not explain a value of today.
-  static bool is_undone(const HistorySeries& s, const HistoryChange& c) {
-    const auto cancel = [&](auto from, auto to) {
-      double sum = from->size, squares = from->u * from->u;
-      for (++from; from != to; ++from) {
-        sum += from->size, squares += from->u * from->u;
-        if (std::fabs(sum) <= 2.0 * std::sqrt(squares)) return true;
+  /// The changes that last: a step that a later one undid within their uncertainty, and the step that
+  /// undid it, do not explain a value of today.
+  static std::vector<const HistoryChange*> lasting(const HistorySeries& s) {
+    std::vector<const HistoryChange*> out;
+    for (const HistoryChange& c : s.changes) {
+      double sum = c.size, squares = c.u * c.u;
+      auto undone = out.end();
+      for (auto it = out.end(); it != out.begin() && undone == out.end();) {
+        --it;
+        sum += (*it)->size, squares += (*it)->u * (*it)->u;
+        if (std::fabs(sum) <= 2.0 * std::sqrt(squares)) undone = it;
       }
-      return false;
-    };
-    const auto index = &c - s.changes.data();
-    return cancel(s.changes.begin() + index, s.changes.end()) ||
-           cancel(s.changes.rend() - index - 1, s.changes.rend());
+      if (undone == out.end())
+        out.push_back(&c);
+      else
+        out.erase(undone, out.end());
+    }
+    return out;
   }
 
   bool is_fault(const std::string& axis, const HistoryChange& c) const {
@@ -129,12 +133,29 @@ class OfMachine {
     });
   }
 
-  /// Whether an event states a repair or compensation of the axis after the date `after`. Events
-  /// after the run are ignored.
-  bool is_repaired(const std::string& axis, const std::string& after) const {
+  /// Mean of the points of the series later than `from` and not later than `to`; NaN if there are
+  /// none.
+  static double mean_of(const HistorySeries& s, const std::string& from, const std::string& to) {
+    double sum = 0.0, n = 0.0;
+    for (const reports::HistoryPoint& p : s.points)
+      if (p.joined && p.date > from && p.date <= to) sum += p.value, n += 1.0;
+    return sum / n;
+  }
+
+  /// Whether an event after the date `after` states a repair or compensation of the axis. Events
+  /// after the run are ignored. With `change`, the campaigns after the repair must be nearer to those
+  /// before the change than to those after it, if there are any.
+  bool is_repaired(const std::string& axis, const std::string& after,
+                   const HistorySeries* series = nullptr,
+                   const HistoryChange* change = nullptr) const {
     return std::any_of(m_.events.begin(), m_.events.end(), [&](const config::Event& e) {
-      return (e.kind == "repair" || e.kind == "compensation") && e.date > after &&
-             e.date <= last_run_.date && e.concerns(axis);
+      if ((e.kind != "repair" && e.kind != "compensation") || e.date <= after ||
+          e.date > last_run_.date || !e.concerns(axis))
+        return false;
+      if (change == nullptr) return true;
+      const double later = mean_of(*series, e.date, last_run_.date);
+      return !(std::fabs(later - mean_of(*series, change->after, e.date)) <
+               std::fabs(later - mean_of(*series, "", change->after)));
     });
   }
 
@@ -374,10 +395,25 @@ class OfMachine {
     return l;
   }
 
+  /// States the limit of the campaign before, if the value would conform to it.
+  void put_wider(WorkItem& l, const Judged& j) const {
+    const std::vector<std::size_t>& judged = j.series->judged;
+    if (judged.size() < 2 || judged.back() != j.result) return;
+    const store::StoredResult &now = m_.stored.results[j.result],
+                              &before = m_.stored.results[judged[judged.size() - 2]];
+    const double reach = std::fabs(now.value) + now.expanded.value_or(0.0);
+    if (before.decision != conforms || before.source != now.source ||
+        before.conditions != now.conditions || !(reach <= *before.tolerance))
+      return;
+    l.finding.id = "worklist.out-limit";
+    l.finding.evidence.push_back({"wider", si(*before.tolerance, l.unit), l.unit});
+    put_text(l, "campaign", m_.stored.campaigns[before.campaign].id);
+  }
+
   /// States a later value for which its campaign states no limit.
   void put_newer(WorkItem& l, const Judged& j) const {
     const store::StoredResult& newest = m_.stored.results[j.series->results.back()];
-    if (newest.campaign <= m_.stored.results[j.result].campaign) return;
+    if (newest.campaign <= m_.stored.results[j.result].campaign) return put_wider(l, j);
     l.finding.id = "worklist.out-not-judged-since";
     const reports::OpenValue last = open_value(m_.stored, j.series->results.back());
     l.finding.evidence.push_back({"last", *last.value, l.unit});
@@ -479,6 +515,19 @@ class OfMachine {
         at->second += (at->second.empty() ? "" : ", ") + one;
   }
 
+  /// The point that was judged last, of several measurements of its campaign.
+  const reports::HistoryPoint* judged_last(const HistorySeries& s) const {
+    const auto k = static_cast<std::size_t>(&s - d_.series.data());
+    if (k >= m_.followed.size() && !m_.shown[k - m_.followed.size()].judged.empty()) {
+      const auto& judged = m_.stored.results[m_.shown[k - m_.followed.size()].judged.back()];
+      for (const reports::HistoryPoint& p : s.points)
+        if (p.campaign == m_.stored.campaigns[judged.campaign].id &&
+            p.value == si(judged.value, s.unit))
+          return &p;
+    }
+    return &s.points.back();
+  }
+
   void soon() {
     for (const HistorySeries& s : d_.series) {
       const std::string axis = axis_of(s.axis, s.quantity);
@@ -494,11 +543,12 @@ class OfMachine {
       l.axis = axis;
       l.quantity = s.quantity;
       l.unit = s.unit;
-      l.value = s.points.back().value;
-      l.u = reports::u_of_value(s.points.back());
+      const reports::HistoryPoint* last = judged_last(s);
+      l.value = last->value;
+      l.u = reports::u_of_value(*last);
       l.limit = s.limit;
-      l.campaign = s.points.back().campaign;
-      l.since = s.points.back().date;
+      l.campaign = last->campaign;
+      l.since = last->date;
       l.finding.evidence.push_back({"expected", s.forecast->value, s.unit});
       l.finding.evidence.push_back({"U", 2.0 * s.forecast->u, s.unit});
       l.finding.evidence.push_back({"percent", 100.0 * s.forecast->p_out, Quantity::number});

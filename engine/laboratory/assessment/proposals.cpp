@@ -130,9 +130,8 @@ std::optional<IntervalProposal> chart(const AssessedMachine& m,
                                       std::optional<IntervalProposal>& refusal) {
   std::optional<IntervalProposal> shortest;
   double least = 0.0;
-  for (const FollowedSeries& s : m.followed) {
-    const auto limit = limit_of(m, s);
-    if (s.ended || !limit) continue;
+  const auto consider = [&](const FollowedSeries& s, const std::optional<FollowedLimit>& limit) {
+    if (s.ended || !limit) return;
     const kernel::Proposal p =
         kernel::control_chart(s.series, s.trend, limit->limit, last_significant(s), limit->beyond);
     const Quantity q = quantity_of_unit(s.unit);
@@ -142,9 +141,9 @@ std::optional<IntervalProposal> chart(const AssessedMachine& m,
     one.why.texts = {{"what", own ? kind_of(s.quantity) : limit->quantity}, {"axis", s.axis}};
     if (!p.months && p.why == "change-not-explained") refusal = one;
     const bool soon = p.why == "out-already";  // the bound of today is beyond the limit
-    if (!soon && (!p.months || p.why != "meets-limit")) continue;
+    if (!soon && (!p.months || p.why != "meets-limit")) return;
     const double months = soon ? 0.0 : *p.months;
-    if (shortest && months >= least) continue;
+    if (shortest && months >= least) return;
     least = months;
     if (least < 1.0) {  // shorter than any interval: measure or repair now
       one.why.id = "interval.out-already";
@@ -154,7 +153,11 @@ std::optional<IntervalProposal> chart(const AssessedMachine& m,
     }
     put(one, "limit", si(limit->limit, q), q);
     shortest = std::move(one);
-  }
+  };
+  for (const FollowedSeries& s : m.followed) consider(s, limit_of(m, s));
+  for (const ShownSeries& s : m.shown)
+    if (const auto limit = limit_of(m, s); limit && open_results(m.stored, s).empty())
+      consider(*s.course, limit);
   return shortest;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -356,6 +357,50 @@ std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> by_quant
   return out;
 }
 
+/// Results of several measurements of one quantity in one state, such as of two lines of an axis, are
+/// a series for each line that most campaigns measured, with its states; else the first of each
+/// campaign and state is followed. What follows a space in the id of a measurement is its state,
+/// unless most campaigns have two of one state that differ by it only.
+std::map<std::string, std::vector<std::size_t>> lines_apart(const StoredMachine& m,
+                                                            std::vector<std::size_t> results) {
+  using OfState = std::map<std::pair<std::size_t, std::string>, std::set<std::string>>;
+  OfState whole, begun;
+  const auto beginning = [](const std::string& id) { return id.substr(0, id.find(' ')); };
+  std::set<std::size_t> campaigns;
+  for (const std::size_t i : results) {
+    const StoredResult& r = m.results[i];
+    campaigns.insert(r.campaign);
+    whole[{r.campaign, r.state}].insert(r.measurement);
+    begun[{r.campaign, r.state}].insert(beginning(r.measurement));
+  }
+  if (std::all_of(whole.begin(), whole.end(), [](const auto& of) { return of.second.size() < 2; }))
+    return {{"", std::move(results)}};
+  const bool by_beginning = std::all_of(whole.begin(), whole.end(), [&](const auto& of) {
+    return begun[of.first].size() == of.second.size();
+  });
+  const OfState& lines_in = by_beginning ? begun : whole;
+  const auto line_of = [&](std::size_t i) {
+    const std::string& id = m.results[i].measurement;
+    return by_beginning ? beginning(id) : id;
+  };
+  std::map<std::string, std::set<std::size_t>> campaigns_of;
+  for (const std::size_t i : results) campaigns_of[line_of(i)].insert(m.results[i].campaign);
+  bool alike = campaigns.size() > 1;
+  for (const auto& [line, of] : campaigns_of) alike = alike && 2 * of.size() > campaigns.size();
+  for (const auto& [of, lines] : lines_in)  // an adjustment concerns all lines, or is not followed
+    alike = alike && (of.second != "as-left" || lines.size() == campaigns_of.size());
+  if (!alike && !by_beginning) return {{"", std::move(results)}};
+  std::map<std::string, std::vector<std::size_t>> lines;
+  for (const std::size_t i : results) {
+    const StoredResult& r = m.results[i];
+    if (alike)
+      lines[line_of(i)].push_back(i);
+    else if (line_of(i) == *lines_in.at({r.campaign, r.state}).begin())
+      lines[""].push_back(i);
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::vector<FollowedSeries> followed_series(const StoredMachine& machine,
@@ -363,8 +408,11 @@ std::vector<FollowedSeries> followed_series(const StoredMachine& machine,
   std::vector<FollowedSeries> out;
   const auto targets = read_targets(machine.other_targets);
   for (auto& [key, results] : by_quantity(machine, true))
-    for (FollowedSeries& s : Joining(machine, targets, std::move(results)).take(events))
-      out.push_back(std::move(s));
+    for (auto& [line, own] : lines_apart(machine, std::move(results)))
+      for (FollowedSeries& s : Joining(machine, targets, std::move(own)).take(events)) {
+        s.line = line;
+        out.push_back(std::move(s));
+      }
   return out;
 }
 
@@ -401,6 +449,48 @@ std::vector<std::size_t> deciding(const StoredMachine& m, const std::vector<std:
   return out;
 }
 
+/// Of the measurement that was judged last, and of others with its limit. `results` are in the order of
+/// `before`.
+std::optional<FollowedSeries> course_of(const StoredMachine& m,
+                                        const std::vector<std::size_t>& results,
+                                        const StoredResult& judged,
+                                        const std::vector<config::Event>& events) {
+  FollowedSeries s{.axis = judged.axis,
+                   .quantity = judged.quantity,
+                   .unit = judged.unit,
+                   .results = {},
+                   .series = {}};
+  for (const std::size_t i : results) {
+    const StoredResult& r = m.results[i];
+    if (r.source != judged.source || r.conditions != judged.conditions ||
+        !(r.tolerance == judged.tolerance || r.measurement == judged.measurement) ||
+        !std::isfinite(r.value) || !(r.expanded.value_or(0.0) > 0.0) ||
+        !day_number(m.campaigns[r.campaign].day))
+      continue;
+    const StoredResult* same = s.results.empty() ? nullptr : &m.results[s.results.back()];
+    if (same == nullptr || same->campaign != r.campaign || same->state != r.state)
+      s.results.push_back(i);
+    else if (std::fabs(r.value) > std::fabs(same->value))
+      s.results.back() = i;
+  }
+  if (s.results.empty()) return std::nullopt;
+  for (const std::size_t i : s.results) {
+    const StoredResult& r = m.results[i];
+    s.series.points.push_back(
+        {static_cast<double>(*day_number(m.campaigns[r.campaign].day)) / days_a_year, r.value,
+         *r.expanded / r.k.value_or(2.0)});
+  }
+  s.seeds = seeds_of(m, s.results);
+  s.series.seed = s.seeds.back(), s.series.own_slope = true;
+  if (s.results.size() > 1) Happenings(m, events, s).declare();
+  auto trend = kernel::trend_of(s.series);
+  if (!trend) return std::nullopt;
+  s.trend = std::move(*trend);
+  // Changes are those of the followed quantities.
+  s.significant.assign(s.trend.changes.size(), false);
+  return s;
+}
+
 }  // namespace
 
 kernel::Series first_points(const FollowedSeries& s, std::size_t count) {
@@ -421,7 +511,8 @@ std::vector<kernel::Point> compared_points(const FollowedSeries& s) {
   return compared(s.stated, s.targets, s.quantity).points;
 }
 
-std::vector<ShownSeries> shown_series(const StoredMachine& machine) {
+std::vector<ShownSeries> shown_series(const StoredMachine& machine,
+                                      const std::vector<config::Event>& events) {
   std::vector<ShownSeries> out;
   for (auto& [key, results] : by_quantity(machine, false)) {
     std::sort(results.begin(), results.end(),
@@ -434,6 +525,8 @@ std::vector<ShownSeries> shown_series(const StoredMachine& machine) {
     for (auto& [unit, own] : of_unit) {
       ShownSeries s{key.first, key.second, unit, own, deciding(machine, own)};
       s.ended = unit != last;
+      if (!s.ended && !s.judged.empty())
+        s.course = course_of(machine, own, machine.results[s.judged.back()], events);
       out.push_back(std::move(s));
     }
   }

@@ -17,6 +17,7 @@ namespace nonio::assessment {
 /// A quantity of an axis over the campaigns that can be compared.
 struct FollowedSeries {
   std::string axis, quantity, unit;
+  std::string line{};                        ///< measurement, if several lines are followed
   std::vector<std::size_t> results;          ///< index of each point into StoredMachine::results
   std::vector<std::uint64_t> evaluations{};  ///< number of the evaluation of each point
   std::vector<nonio::statistics::Point> stated{};  ///< points as stated by their campaigns
@@ -54,6 +55,9 @@ struct ShownSeries {
   /// Deciding result of each campaign with a limit: as left before as found, and the worst of
   /// several measurements.
   std::vector<std::size_t> judged{};
+  /// Comparable results with U, if the quantity has a limit, for its forecast: the worst of each
+  /// campaign and state, with all of its U as its own, which overestimates U of a drift.
+  std::optional<FollowedSeries> course{};
   /// Whether later campaigns use another unit, because the axis was changed between linear and
   /// rotary.
   bool ended = false;
@@ -70,7 +74,8 @@ nonio::statistics::Series first_points(const FollowedSeries& series, std::size_t
 /// the pooled u.
 std::vector<nonio::statistics::Point> compared_points(const FollowedSeries& series);
 
-std::vector<ShownSeries> shown_series(const store::StoredMachine& machine);
+std::vector<ShownSeries> shown_series(const store::StoredMachine& machine,
+                                      const std::vector<config::Event>& events);
 
 struct AssessedMachine {
   store::MachineState state;

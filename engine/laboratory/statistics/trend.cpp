@@ -70,6 +70,7 @@ class Trending {
     if (s_.steps) know_steps(*s_.steps);
     for (int step = 0; step <= most_steps; ++step)
       if (!improve()) break;
+    prefer_steps();
     Trend out = fitted();
     smallest(out);
     walk(out);
@@ -221,6 +222,48 @@ class Trending {
     shape_ = line ? std::move(drifting) : std::move(stepped);
     steps_ += line ? 0 : 1;
     return true;
+  }
+
+  /// A drift with steps against it: steps alone, if they are about as good, because the steps of the
+  /// line are then in no two campaigns.
+  void prefer_steps() {
+    if (!shape_.free || steps_ < 1 || s_.steps) return;
+    const auto with_drift = fit(shape_);
+    if (!with_drift) return;
+    const double slope = with_drift->b(with_drift->b.size() - 1);
+    bool against = false;
+    for (std::size_t k = 0; k < shape_.changes.size(); ++k)
+      against = against || (!shape_.changes[k].declared &&
+                            with_drift->b(static_cast<Index>(k) + 1) * slope < 0.0);
+    if (!against) return;
+    const Shape line = shape_;
+    shape_.drifts = shape_.free = false;
+    std::erase_if(shape_.changes, [](const Change& c) { return !c.declared; });
+    const double enough = with_drift->chi2 + inseparable;
+    auto best = fit(shape_);
+    int steps = 0;
+    while (best && best->chi2 > enough && steps < most_steps) {
+      const Places at = places(*best);
+      if (at.after.empty()) break;
+      Index largest = 0;
+      math::transposed_times(at.direction, w_.y).cwiseAbs2().maxCoeff(&largest);
+      const std::size_t after = at.after[static_cast<std::size_t>(largest)];
+      shape_.changes.push_back({after, 0.0, 0.0, 1.0, cause_at(after), {}});
+      best = fit(shape_);
+      ++steps;
+    }
+    if (!best || best->chi2 > enough) {
+      shape_ = line;
+      return;
+    }
+    steps_ = steps;
+    for (std::size_t k = 0; k < shape_.changes.size(); ++k) {
+      Change& c = shape_.changes[k];
+      const auto i = static_cast<Index>(k) + 1;
+      if (!c.declared)
+        c.p = std::min(1.0, static_cast<double>(s_.points.size() - 1) *
+                                normal_two_sided(best->b(i) / std::sqrt(best->C(i, i))));
+    }
   }
 
   Change::Cause cause_at(std::size_t after) const {

@@ -19,7 +19,8 @@
 /// Bonferroni's bound if it is below 0.001, where the bound is sharp, otherwise the result of up to
 /// 10,000 simulated series of the same V and X. Drift: the decrease of chi2 by the column of time,
 /// normal. A step is added if significant at 1 %, a drift at Series::drift_below; if both are, the
-/// drift, unless its chi2 is more than 4 larger. At most three steps are added. For eight points or
+/// drift, unless its chi2 is more than 4 larger. A drift with a step against it is replaced by
+/// steps alone if their chi2 is at most 4 larger. At most three steps are added. For eight points or
 /// more, a random walk replaces a level that does not fit, or two or three steps if its likelihood
 /// is larger than theirs with a penalty of 3 ln n per step.
 ///

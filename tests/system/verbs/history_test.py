@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import shutil
 import sqlite3
 import subprocess
 import unittest
@@ -31,8 +32,8 @@ class HistoryVerbs(VerbTest):
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done
 
-    def night(self, expect=0):
-        return self.nonio("run", self.site, "--out", self.out, "--date", "2026-06-01", expect=expect)
+    def night(self, expect=0, date="2026-06-01"):
+        return self.nonio("run", self.site, "--out", self.out, "--date", date, expect=expect)
 
     def event(self, *args, expect=0):
         return self.nonio("machine", "event", self.site, *args, expect=expect)
@@ -71,7 +72,7 @@ class HistoryVerbs(VerbTest):
                         ("event", self.site, "--machine", "S-0042", "--kind", "crash", "--text", "hit", "--out", self.out)):
             self.assertIn('no machine "S-0042"', self.nonio("machine", *refused, expect=2).stderr)
 
-    def years(self, stated, tolerance, effects):
+    def years(self, stated, tolerance, effects, date="2026-06-01"):
         """One campaign a half-year, with its active backlash value, its tolerances and what it measures."""
         (self.site / "site.toml").write_text('[run]\nanalyses = ["iso230-2"]\noutputs = []\n')
         for k, (value, limit, of) in enumerate(zip(stated, tolerance, effects)):
@@ -80,7 +81,7 @@ class HistoryVerbs(VerbTest):
             file = self.site / name / "campaign.toml"
             file.write_text(file.read_text().replace('active_backlash_mm = "none"\n', f"active_backlash_mm = {value}\nexpansion_um_per_m_K = 11.5\n{limit}")
                             + BUDGET)
-        self.night()
+        self.night(date=date)
         lines = json.loads((self.out / "summary.json").read_text())["lines"]
         return [line for line in lines if line["kind"] in ("changed", "out")], lines
 
@@ -101,6 +102,61 @@ class HistoryVerbs(VerbTest):
         found, lines = self.years(['"none"'] * 4, [limit] * 3 + [""], [{"backlash": b} for b in (-10, -10, -10, -1)])
         said = " ".join(line["says"] for line in found)
         self.assertIn("Did not conform to the tolerance limit of 8.00 um when it was last judged. On 2023-07-10, 1.", said, lines)
+
+    def test_the_date_is_kept_only_if_all_quantities_with_a_limit_keep_it(self):
+        """B is steady; A, which has no model of its own, grows beyond its limit before the next date."""
+        limit = "tolerance_um = { A = 24.5, B = 8.0 }\n"
+        _, lines = self.years(['"none"'] * 7, [limit] * 7, [{"scale": 10.0 * k} for k in range(7)], "2025-02-01")
+        series = json.loads(self.nonio("machine", "history", self.out, "S-0042", "--json").stdout)["series"]
+        of = {s["quantity"]: s["forecast"] for s in series if s.get("forecast")}
+        self.assertEqual({q: of[q]["answer"] for q in ("A", "B", "scale")}, {"A": "act", "B": "other-decides", "scale": "expected"})
+        self.assertGreater(of["A"]["value"], 24.5)
+        self.assertEqual([(line["kind"], line["quantity"]) for line in lines if line["kind"] == "soon"], [("soon", "A")], lines)
+        self.assertNotIn("Keep the date", self.nonio("machine", "history", self.out, "S-0042").stdout)
+
+    def test_the_date_is_kept_where_all_are_steady(self):
+        limit = "tolerance_um = { A = 24.5, B = 8.0 }\n"
+        _, lines = self.years(['"none"'] * 7, [limit] * 7, [{"scale": 50.0}] * 7, "2025-02-01")
+        self.assertEqual([line for line in lines if line["kind"] == "soon"], [])
+        self.assertIn("Keep the date", self.nonio("machine", "history", self.out, "S-0042", "--quantity", "A").stdout)
+
+    def test_a_second_crash_after_a_repair_is_a_line(self):
+        found, lines = self.years(['"none"'] * 8, [""] * 8, [{"backlash": b} for b in [-0.6] * 3 + [-5.0] + [-0.6] * 3 + [-5.0]])
+        self.assertEqual([line["kind"] for line in found], ["changed"], lines)
+        self.assertIn("between 2025-01-10 and 2025-07-10", found[0]["says"])
+
+    def test_two_lines_of_an_axis_are_two_series(self):
+        """Two measurements of X in each campaign, with other reversals: neither changes."""
+        for k in range(8):
+            name, day = f"c{k}", f"{2022 + k // 2}-0{1 + 6 * (k % 2)}-10"
+            self.write(name, day, k + 1, noise=0.1, backlash=-3.4)
+            (self.site / name / "low.csv").write_text(readings(seed=100 + k, noise=0.1, backlash=-2.1))
+            file = self.site / name / "campaign.toml"
+            text = file.read_text().replace('[[measurement]]\nid = "X"\n', '[[measurement]]\nid = "X-low"\nkind = "axis"\naxis = "X"\nfile = "low.csv"\n'
+                                            '[[measurement]]\nid = "X-high"\n')
+            file.write_text(text + BUDGET)
+        self.night()
+        series = [s for s in json.loads(self.nonio("machine", "history", self.out, "S-0042", "--json").stdout)["series"]
+                  if s["quantity"] == "B_mean"]
+        self.assertEqual({s["line"]: (s["model"], len(s["points"]), s["changes"]) for s in series},
+                         {"X-low": ("level", 8, []), "X-high": ("level", 8, [])})
+        said = self.nonio("machine", "history", self.out, "S-0042", "--quantity", "B_mean").stdout
+        self.assertIn("X X-high  ", said)
+
+    def test_a_repair_that_did_not_help_closes_no_line(self):
+        event = '[[event]]\nmachine = "S-0042"\ndate = {}\nkind = "{}"\naxis = "X"\ntext = "{}"\n'
+        (self.site / "events.toml").write_text(event.format("2024-02-01", "crash", "hit the vice")
+                                               + event.format("2024-08-01", "repair", "new nut"))
+        for after, kinds in ((-5.0, ["changed"]), (-0.6, [])):
+            shutil.rmtree(self.out, ignore_errors=True)
+            found, lines = self.years(['"none"'] * 7, [""] * 7, [{"backlash": b} for b in [-0.6] * 5 + [-5.0, after]])
+            self.assertEqual([line["kind"] for line in found], kinds, lines)
+
+    def test_a_limit_that_was_lowered_is_no_change_of_the_machine(self):
+        limits = ["tolerance_um = { B = 8.0 }\n"] * 4 + ["tolerance_um = { B = 1.2 }\n"]
+        found, lines = self.years(['"none"'] * 5, limits, [{"backlash": -3.0}] * 5)
+        self.assertEqual(len(found), 1, lines)
+        self.assertIn("would to the limit of 8.00 um that campaign c3 states", found[0]["says"])
 
     def test_query_says_what_is_wrong(self):
         self.assertIn("nonio run SITE", self.nonio("machine", "list", self.site, expect=2).stderr)

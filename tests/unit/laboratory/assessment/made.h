@@ -96,7 +96,7 @@ class MadeMachine {
         {},
         {}};
     m.followed = assessment::followed_series(stored_, events_);
-    m.shown = assessment::shown_series(stored_);
+    m.shown = assessment::shown_series(stored_, events_);
     return m;
   }
 

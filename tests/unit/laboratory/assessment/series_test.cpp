@@ -64,7 +64,7 @@ TEST(WorklistSeries, LargestValuesOfCirclesHaveNoLineAndTheWorstOfADayCounts) {
   auto again = m.stored().results.front();  // G_ccw of the first campaign, measured twice
   again.value = 20.0, again.decision = "does not conform";
   m.stored().results.push_back(again);
-  const auto shown = assessment::shown_series(m.stored());
+  const auto shown = assessment::shown_series(m.stored(), {});
   ASSERT_EQ(shown.size(), 7U);
   for (const auto& s : shown) {
     EXPECT_EQ(s.judged.size(), 8U) << s.quantity;

@@ -46,6 +46,21 @@ TEST(Trend, ALargeStepIsNamedWithItsPlaceAndSize) {
   }
 }
 
+TEST(Trend, StepsAreThoseThatTwoCampaignsShow) {
+  // A drift with steps against it fits these as well, with changes between equal values.
+  for (const std::vector<double>& values : {std::vector{1.90, 1.97, 2.06, 5.07, 7.97, 10.03},
+                                            std::vector{2., 2., 4., 4., 4., 4., 4., 6.}}) {
+    Series s;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      s.points.push_back({0.5 * static_cast<double>(i), values[i], 0.07});
+    const auto t = trend_of(s);
+    ASSERT_TRUE(t);
+    ASSERT_FALSE(t->changes.empty());
+    for (const Change& c : t->changes)
+      EXPECT_NEAR(c.size, values[c.after + 1] - values[c.after], 0.3) << c.after;
+  }
+}
+
 TEST(Trend, TwoPointsAreCompared) {
   const auto t = trend_of(stepped(2, 0, 4.0));
   ASSERT_TRUE(t);

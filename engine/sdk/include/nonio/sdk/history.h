@@ -57,7 +57,9 @@ struct HistoryForecast {
   /// Day on which the 95 % bound reaches the limit; empty without a limit, or if not within 20
   /// years.
   std::string leaves{};
-  std::string answer;  ///< keep, watch, act, overdue or cannot-say
+  /// keep, watch, watch-now, act, overdue, cannot-say, expected (no limit), or other-decides: within
+  /// the limit, but not all quantities of the axis with a limit have the answer keep.
+  std::string answer;
 };
 
 struct HistorySeries {
@@ -78,6 +80,7 @@ struct HistorySeries {
     double from = 0.0, to = 0.0;
   };
   std::optional<Over> compared_over{};
+  std::string line{};  ///< measurement, if several lines of the axis are followed
 
   /// Quantity of positions of the axis.
   Quantity position() const {
