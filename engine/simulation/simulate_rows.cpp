@@ -181,6 +181,7 @@ Expected<Observations> on_circle(const CycleSpec& c) {
       o.lines.push_back({c.measurement.id + (d > 0.0 ? " +" : " -") +
                              (run == 1 ? "" : " run " + std::to_string(run)),
                          o.sense.back()});
+      o.lines.back().feed = c.feed;
     }
   return o;
 }

@@ -212,14 +212,15 @@ void append_places(Part& part, const Observations& o, const Measurement& m) {
   }
 }
 
-void append_lines(Observations& to, const Observations& more, const std::string& id) {
+void append_lines(Observations& to, const Observations& more, const Measurement& m) {
   const std::size_t before = to.line.size();
   const auto first = static_cast<std::uint32_t>(to.lines.size());
   for (Observations::Line line : more.lines) {
     // Two tables may both contain a line "1"; within a part, names of lines must be unique.
     if (std::any_of(to.lines.begin(), to.lines.end(),
                     [&](const auto& known) { return known.name == line.name; }))
-      line.name = id + " " + line.name;
+      line.name = m.id + " " + line.name;
+    line.feed = m.feed;
     to.lines.push_back(std::move(line));
   }
   for (std::size_t i = 0; i < more.size(); ++i) to.line.push_back(first + line_of(more, i));
@@ -303,7 +304,7 @@ void append_run(Part& part, const Observations& listed, const Measurement& m) {
   part.along = axis.position;
   part.way = axis.approach;
   if (more.lines.size() > 1) {  // each line has a zero of its own
-    append_lines(to, more, m.id);
+    append_lines(to, more, m);
   } else {
     to.line.insert(to.line.end(), more.size(), static_cast<std::uint32_t>(to.lines.size()));
     to.lines.push_back({m.id, more.lines.empty() ? Vector{} : more.lines.front().sense});
@@ -343,7 +344,7 @@ void append_space(Part& part, const Campaign& campaign, const std::vector<Observ
     }
     to.order_known = to.order_known && more.order_known;
     const auto first = static_cast<std::uint32_t>(to.lines.size());
-    append_lines(to, more, campaign.measurements[m].id);
+    append_lines(to, more, campaign.measurements[m]);
     append_channels(to, more, first);
     append_places(part, more, campaign.measurements[m]);
     append_readings(part, more, campaign.measurements[m].id);

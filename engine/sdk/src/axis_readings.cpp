@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/sdk/axis_readings.h"
 
+#include <array>
+#include <map>
+
+#include "nonio/sdk/space_readings.h"
+
 namespace nonio {
 
 namespace {
@@ -147,8 +152,23 @@ Effect::Shape fixed_point_shape() {
           .usual = 0.0};
 }
 
+bool is_circle_without_times(const Observations& o) {
+  if (o.sense.empty() || o.angular || of_ball_centres(o)) return false;
+  if (std::any_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); }))
+    return false;
+  std::map<std::uint32_t, std::array<double, 3>> first;
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    const std::uint32_t line = o.line_of(i);
+    if (!o.lines[line].body.empty()) continue;
+    const auto& n = first.try_emplace(line, o.sense[i]).first->second;
+    if (n[0] * o.sense[i][0] + n[1] * o.sense[i][1] + n[2] * o.sense[i][2] < 0.5) return true;
+  }
+  return false;
+}
+
 WhyNot no_order(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
+  if (r && is_circle_without_times(o)) return {"no-times"};
   return {r && !(r->duration > 0.0) ? "no-order" : ""};
 }
 

@@ -2,8 +2,9 @@
 // Circles: lines whose readings are sensed along the radius, at P = c + R n. With n = (cos t, sin
 // t) in the plane and d = +1 counter-clockwise, -1 clockwise:
 //     circle-centre    part of every model: a n_1 + b n_2, position of the instrument; a, b: m
-//     servo-mismatch   XY, YZ, ZX: w d sin t cos t; w: m, path lag F/Kv of the first axis less that
-//                      of the second: the lag is opposite to the motion, e = -F/Kv v
+//     servo-mismatch   XY, YZ, ZX: (F/F0) w d sin t cos t; w: m, path lag F0/Kv of the first axis
+//                      less that of the second at F0 = 1000 mm/min: the lag is opposite to the
+//                      motion, e = -F/Kv v; F/F0 = 1 where the feed F is not stated
 //     lateral-play     EYX (e_y when X reverses) and so on: (L/2) n_y d_X, d_X direction of X; L: m
 #include <algorithm>
 
@@ -102,18 +103,19 @@ std::vector<std::string> mismatches(const Observations& o) {
   std::vector<std::string> names;
   if (o.sense.empty()) return names;
   const SpaceReadings s = space_of(o);
-  for (const Plane& plane : planes) {
-    bool plus = false, minus = false;
-    for (std::size_t line = 0; line < o.lines.size(); ++line)
-      if (circle_plane(o, s, line) == &plane)
-        for (const std::size_t i : rows_of(o, line)) {
-          const int turn = turn_of(o, plane, i);
-          plus |= turn > 0, minus |= turn < 0;
-        }
-    if (plus && minus) names.emplace_back(plane.name);
-  }
+  for (const Plane& plane : planes)
+    for (std::size_t line = 0; line < o.lines.size(); ++line) {
+      if (circle_plane(o, s, line) != &plane) continue;
+      const auto rows = rows_of(o, line);
+      const auto turns = [&](std::size_t i) { return turn_of(o, plane, i) != 0; };
+      if (std::none_of(rows.begin(), rows.end(), turns)) continue;
+      names.emplace_back(plane.name);
+      break;
+    }
   return names;
 }
+
+constexpr double feed_of_lag = 1.0 / 60.0;  // m/s
 
 Expected<Effect::Columns> mismatch(const Observations& o, const Axis& place,
                                    const std::vector<double>&) {
@@ -122,9 +124,10 @@ Expected<Effect::Columns> mismatch(const Observations& o, const Axis& place,
   for (std::size_t line = 0; line < o.lines.size(); ++line) {
     const Plane* plane = circle_plane(o, s, line);
     if (plane == nullptr || place.name != plane->name) continue;
+    const double feed = o.lines[line].feed.value_or(feed_of_lag) / feed_of_lag;
     for (const std::size_t i : rows_of(o, line))
       out[0][i] =
-          turn_of(o, *plane, i) * o.sense_of(i)[plane->first] * o.sense_of(i)[plane->second];
+          feed * turn_of(o, *plane, i) * o.sense_of(i)[plane->first] * o.sense_of(i)[plane->second];
   }
   return out;
 }
@@ -188,7 +191,7 @@ NONIO_PLUGIN(registry) {
       .is_nuisance = true});
   registry.add(Effect{
       .info = {"servo-mismatch", "1.0.0", "Two axes that follow their command with different lag"},
-      .linear = {{"w", "path lag of the first axis less that of the second", Quantity::deviation}},
+      .linear = {{"w", "path lag at 1000 mm/min, first axis less second", Quantity::deviation}},
       .shapes = {},
       .applies = always,
       .columns = mismatch,

@@ -9,7 +9,7 @@ namespace nonio::growth_drift {
 
 static bool applies(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
-  return r && r->length > 0.0 && r->duration > 0.0;
+  return r && r->length > 0.0 && r->duration > 0.0 && !is_circle_without_times(o);
 }
 
 static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,

@@ -9,7 +9,7 @@ namespace nonio::warm_up {
 
 static bool applies(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
-  return r && r->length > 0.0 && r->duration > 0.0;
+  return r && r->length > 0.0 && r->duration > 0.0 && !is_circle_without_times(o);
 }
 
 /// Time constants with a constant ratio. Below 1/40 of the duration, the warm-up ends within a few

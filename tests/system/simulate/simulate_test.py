@@ -337,10 +337,26 @@ class Circles(unittest.TestCase):
         self.assertEqual(named - scale, {"backlash:X", "backlash:Y", "servo-mismatch:XY", "squareness:XY", "periodic:X"})
         self.assertEqual(found["verdict"]["kind"], "nothing")
 
+    def test_a_servo_mismatch_is_one_lag_at_every_feed(self):
+        """Two feeds in one campaign: the analysis, which fits each circle on its own, gives one time, and the model one value."""
+        first = self.text[self.text.index("[[measurement]]"):self.text.index("[run]")]
+        cycle = self.text[self.text.index("[[cycle]]"):self.text.index("[[effect]]")]
+
+        def other(text):
+            return text.replace("C1", "C2").replace("feed_mm_per_min = 1000", "feed_mm_per_min = 3000").replace("circle.csv", "fast.csv")
+        self.made(self.text.replace(first, first + other(first)).replace(cycle, cycle + other(cycle)))
+        each = [a["values"]["servo_mismatch"] for a in self.results()["analyses"] if a["plugin"] == "circle"]
+        self.assertEqual(len(each), 2)
+        for value in each:
+            self.assertLess(abs(value["value"] - 6e-3 / (1000 / 60)), value["U"])
+        done = nonio("model", "explain", self.root / "site" / "bar", "--auto", "--json", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertIn("servo-mismatch:XY", {step["effect"] for step in found["steps"]})
+        self.assertEqual(found["verdict"]["kind"], "nothing", found["verdict"])
+
     def test_one_direction_and_the_lines_of_the_file(self):
-        servo = '[[effect]]\nname = "servo-mismatch:XY"\nw_um = 6.0\n'
-        one_way = self.text.replace(servo, "").replace("runs = 2", 'runs = 1\norder = "unidirectional"\ndirection = "-"')
-        self.assertIn("no measurement shows it", self.made(one_way + servo, expect=2).stderr)
+        one_way = self.text.replace("runs = 2", 'runs = 1\norder = "unidirectional"\ndirection = "-"')
         self.made(one_way)
         lines = (self.root / "site" / "bar" / "circle.csv").read_text("utf-8").splitlines()[1:]
         self.assertEqual(lines[0], "run,direction,angle_deg,deviation_um,time_s")
@@ -352,6 +368,11 @@ class Circles(unittest.TestCase):
         values = next(a["values"] for a in self.results()["analyses"] if a["plugin"] == "circle")
         self.assertNotIn("C0Y", values)
         self.assertLess(abs(values["B_X"]["value"] + 5.0), values["B_X"]["U"])
+        done = nonio("model", "explain", self.root / "site" / "bar", "--json", "--quiet")
+        found = json.loads(done.stdout)
+        squareness, = (c for c in found["candidates"] if c["effect"] == "squareness:XY")
+        self.assertIn("servo-mismatch:XY", squareness["aliases"])
+        self.assertNotIn("opposed", json.dumps(self.results()["analyses"]))
 
     def test_refusals(self):
         for old, new, says in (("feed_mm_per_min = 1000\n", "", "feed_mm_per_min"), ("readings = 720", "readings = 5", "24 to 100000"),

@@ -149,7 +149,8 @@ void another_size(const Passes& passes, Quantity deviation, std::vector<Finding>
 void implausible_passes(const Passes& passes, const Observations& o, bool with_directions,
                         std::vector<Finding>& out) {
   implausible_copies(passes, o, out);
-  if (!with_directions || o.lines.size() > 1) return;
+  // A circle has both directions of each axis in one pass.
+  if (!with_directions || o.lines.size() > 1 || !o.sense.empty()) return;
   const Quantity deviation = o.angular ? Quantity::angular_deviation : Quantity::deviation;
   against_order(passes.strokes, out);
   implausible_values(passes, o, out);

@@ -79,7 +79,12 @@ std::vector<double> fixed_points(const Observations& o, const Axis& axis);
 
 Effect::Shape fixed_point_shape();
 
-/// Returns "no-order" if the order of the readings in time is not known, otherwise an empty id.
+/// Whether readings are of a circle, sensed along its radius, without times: a circle takes seconds,
+/// in which nothing warms.
+bool is_circle_without_times(const Observations& o);
+
+/// Returns "no-times" for a circle without times, "no-order" if the order of the readings in time is
+/// not known, otherwise an empty id.
 WhyNot no_order(const Observations& o, const Axis& axis);
 
 /// Returns "one-direction" if all positions were approached from one side, otherwise an empty id.

@@ -51,6 +51,7 @@ struct Observations {
     /// As stated: position of the zero of the body, m, and rotation about Z, rad.
     std::array<double, 3> body_origin{};
     double body_turned = 0.0;
+    std::optional<double> feed{};  ///< feed along the path, m/s or rad/s, if stated
   };
 
   /// A quantity recorded in addition to the deviations: a temperature, a speed, a load. It has its

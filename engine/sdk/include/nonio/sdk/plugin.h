@@ -202,6 +202,8 @@ struct Effect {
   /// Whether the effect is a smooth curve; its first shape is then the number of columns.
   bool curve = false;
   bool compensable = false;  ///< whether a table of the control can compensate it
+  /// Effect for the same error in the frame of a part that was turned on the table, if there is one.
+  std::string of_part{};
   std::function<bool(const Observations&, const Axis&)> applies;
   /// Returns columns with one entry per reading, in the unit of the deviation divided by that of
   /// the parameter.
@@ -346,7 +348,7 @@ class Registry {
   ~Registry() = default;
 };
 
-#define NONIO_SDK_VERSION 20
+#define NONIO_SDK_VERSION 21
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
