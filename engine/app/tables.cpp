@@ -68,6 +68,17 @@ void sentences(std::ostream& out, const Json& list, const std::string& label = {
     sentence(out, 2, label + (one.is_string() ? one : one.at("says")).get<std::string>());
 }
 
+/// Reversal spikes of a circle can be many readings.
+void print_suspects(std::ostream& out, const Json& part, const TerminalWords& say) {
+  constexpr std::size_t most = 5;
+  const Json& all = part.at("suspects");
+  const std::size_t shown = all.size() > most + 1 ? most : all.size();
+  for (std::size_t i = 0; i < shown; ++i)
+    sentence(out, 2, say("suspect") + ": " + text_in(all[i], "says"));
+  if (shown < all.size())
+    sentence(out, 2, say("suspects.more", {{"count", std::to_string(all.size() - shown)}}));
+}
+
 void print_floor(std::ostream& out, const Json& part, const TerminalWords& say) {
   if (storage::get(part, "noise_floor"))
     line(out, say("floor"),
@@ -345,7 +356,7 @@ void print_comparison(std::ostream& out, const Json& part, const TerminalWords& 
   if (!model.at("effects").empty()) sentence(out, 2, say("aliases.elsewhere"));
   print_places(out, part, say);
   if (part.contains("means")) line(out, "", say("means", {{"count", part.at("means").dump()}}));
-  sentences(out, part.at("suspects"), say("suspect") + ": ");
+  print_suspects(out, part, say);
   print_after_table(out, part, say);
   sentences(out, part.at("warnings"), say("warning") + ": ");
 }
@@ -378,7 +389,7 @@ void print_explanation(std::ostream& out, const Json& part, const std::string& f
   print_set(out, part, say);
   print_advice(out, part, folder, say);
   print_limits(out, part, all, say);
-  sentences(out, part.at("suspects"), say("suspect") + ": ");
+  print_suspects(out, part, say);
   sentences(out, part.at("warnings"), say("warning") + ": ");
   if (part.contains("what_if")) print_foresight(out, part.at("what_if"), say);
 }
@@ -448,13 +459,25 @@ void print_joint_part(std::ostream& out, const Json& part, const TerminalWords& 
           << say(e.at("per_campaign") == "shared" ? "joint.is-shared" : "joint.is-own") << "\n";
 }
 
+void print_alone(std::ostream& out, const Json& document, const TerminalWords& say) {
+  constexpr std::size_t most = 20;
+  sentence(out, 0, say("joint.alone", {{"parts", list_in(document, "alone")}}));
+  const Json& all = document.at("alone_verdicts");
+  for (std::size_t i = 0; i < std::min(all.size(), most); ++i)
+    sentence(out, 2, text_in(all[i], "part") + ": " + text_in(all[i], "says"));
+  if (all.size() > most)
+    sentence(out, 2, say("joint.more-alone", {{"count", std::to_string(all.size() - most)}}));
+}
+
 }  // namespace
 
 void print_together(std::ostream& out, const Json& document, const TerminalWords& say) {
   constexpr std::size_t most = 8;
   for (const Json& part : modelling::parts_of(document)) print_joint_part(out, part, say);
-  if (document.contains("alone"))
-    sentence(out, 0, say("joint.alone", {{"parts", list_in(document, "alone")}}));
+  if (document.contains("alone")) print_alone(out, document, say);
+  if (document.contains("parts_differ"))
+    for (const Json& of : document.at("parts_differ"))
+      sentence(out, 0, say("joint.parts-differ", {{"campaigns", of.get<std::string>()}}));
   const Json& next = document.at("next");
   if (next.size() > 1) out << say("joint.next") << "\n";
   for (std::size_t i = 0; i < std::min(next.size(), most) && next.size() > 1; ++i)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <list>
 #include <map>
 #include <set>
 
@@ -108,6 +109,63 @@ class Kinds {
   std::map<std::string, std::string> kinds_;
   std::string unnamed_;
 };
+
+bool of_parts(const Observations& o) {
+  return std::any_of(o.lines.begin(), o.lines.end(), [](const auto& l) { return !l.body.empty(); });
+}
+
+/// One campaign with the parts that a machine made, of all its campaigns: each has a placement and a
+/// temperature of its own, so they are explained like several parts of one campaign.
+reading::ReadCampaign with_all_parts(const std::vector<const reading::ReadCampaign*>& campaigns) {
+  reading::ReadCampaign out = *campaigns.back();
+  Campaign& to = out.manifest->campaign;
+  to.measurements.clear(), out.observations.clear();
+  for (const reading::ReadCampaign* read : campaigns) {
+    const Campaign& from = read->manifest->campaign;
+    for (std::size_t m = 0; m < read->observations.size(); ++m) {
+      if (!of_parts(read->observations[m])) continue;
+      to.measurements.push_back(from.measurements[m]);
+      // What follows a space is a state of the machine.
+      to.measurements.back().id = from.id + "/" + from.measurements[m].id;
+      Observations& o = out.observations.emplace_back(read->observations[m]);
+      o.measurement = to.measurements.back().id;
+      for (auto& line : o.lines)
+        line.name = from.id + "/" + line.name, line.body = from.id + "/" + line.body;
+    }
+  }
+  to.id =
+      campaigns.front()->manifest->campaign.id + (campaigns.size() > 2 ? " ... " : ", ") + to.id;
+  return out;
+}
+
+/// The campaigns whose parts were joined, by the id of the joint campaign.
+using Joined = std::map<std::string, std::vector<const reading::ReadCampaign*>>;
+
+/// Replaces the parts that one machine made in several campaigns by one campaign with all of them.
+/// `made` owns the campaigns that are changed.
+std::vector<const reading::ReadCampaign*> join_parts(
+    std::vector<const reading::ReadCampaign*> campaigns, std::list<reading::ReadCampaign>& made,
+    Joined& joined) {
+  std::map<std::string, std::vector<const reading::ReadCampaign*>> by_machine;
+  for (const reading::ReadCampaign* read : campaigns)
+    if (const std::string machine = config::machine_input(read->manifest->campaign.machine);
+        !machine.empty() &&
+        std::any_of(read->observations.begin(), read->observations.end(), of_parts))
+      by_machine[machine].push_back(read);
+  for (const auto& [machine, list] : by_machine) {
+    if (list.size() < 2) continue;
+    for (const reading::ReadCampaign*& read : campaigns) {
+      if (std::find(list.begin(), list.end(), read) == list.end()) continue;
+      reading::ReadCampaign& rest = made.emplace_back(*read);
+      for (Observations& o : rest.observations)
+        if (of_parts(o)) o = {};
+      read = &rest;
+    }
+    campaigns.push_back(&made.emplace_back(with_all_parts(list)));
+    joined[campaigns.back()->manifest->campaign.id] = list;
+  }
+  return campaigns;
+}
 
 using Axes = std::map<Key, std::vector<Measured>>;
 
@@ -414,11 +472,34 @@ Json part_of_json(const Together& t, const ModelWords& words) {
   return json;
 }
 
+/// Whether the term is in the models of some campaigns only: it is searched like effects that no
+/// model has, because otherwise the other campaigns would lack it.
+bool in_some_only(const Together& t, const model::Term& term) {
+  if (term.effect->is_nuisance || term.held || term.grouping) return false;
+  return std::any_of(t.parts.begin(), t.parts.end(), [&](const PartModel& part) {
+    return std::none_of(part.terms.begin(), part.terms.end(),
+                        [&](const model::Term& own) { return own.of_all() == term.of_all(); });
+  });
+}
+
 std::vector<model::Member> members_of(const Together& t) {
   std::vector<model::Member> members;
-  for (std::size_t m = 0; m < t.parts.size(); ++m)
-    members.push_back(
-        {t.campaigns[m], t.machines[m], &t.parts[m].part, t.parts[m].terms, t.parts[m].catalogue});
+  for (std::size_t m = 0; m < t.parts.size(); ++m) {
+    const PartModel& part = t.parts[m];
+    model::Member& member = members.emplace_back(
+        model::Member{t.campaigns[m], t.machines[m], &part.part, {}, part.catalogue});
+    for (const model::Term& term : part.terms) {
+      if (!in_some_only(t, term)) {
+        member.model.push_back(term);
+        continue;
+      }
+      if (std::any_of(member.catalogue.begin(), member.catalogue.end(),
+                      [&](const model::Term& known) { return known.name() == term.name(); }))
+        continue;
+      member.catalogue.push_back(term);
+      member.catalogue.back().shape.clear();
+    }
+  }
   return members;
 }
 
@@ -443,19 +524,70 @@ bool add_named_causes(Together& t, std::uint64_t seed) {
 
 /// Keeps of the explanation what is shown of a part that is explained on its own.
 void keep_explanation(Alone& one, model::Explanation explained) {
-  one.plans = std::move(explained.plans);
-  const auto& lines = one.part.part.table.lines;
-  if (std::none_of(lines.begin(), lines.end(), [](const auto& l) { return !l.body.empty(); }))
-    return;
-  const model::Fit& fit = explained.comparison.fit;
+  one.explained = std::move(explained);
+  model::Fit& fit = one.explained.comparison.fit;
+  if (!of_parts(one.part.part.table)) return fit.part.clear();
   std::vector<model::Term> terms = fit.terms;
-  for (const model::Candidate& c : explained.candidates)
-    if (std::find(explained.together.begin(), explained.together.end(), c.term.name()) !=
-        explained.together.end())
+  const std::vector<std::string>& together = one.explained.together;
+  for (const model::Candidate& c : one.explained.candidates)
+    if (std::find(together.begin(), together.end(), c.term.name()) != together.end())
       terms.push_back(c.term);
   const auto found = model::fit(one.part.part.table, terms, fit.weight, fit.noise);
   one.residual = found ? found->residual : fit.residual;
   one.noise = found ? found->s : fit.s;
+  fit.part.clear();
+}
+
+bool explain_alone(Alone& one, std::uint64_t seed, FleetExplanation& all) {
+  auto explained = explain_part(one.part, seed);
+  if (explained)
+    keep_explanation(one, std::move(*explained));
+  else
+    all.left_out.push_back(one.campaign + " " + one.part.part.name + " (" +
+                           explained.error().message + ")");
+  return explained.has_value();
+}
+
+/// The parts that the machine made in one campaign, explained on their own.
+std::vector<Alone> parts_of_one(const reading::ReadCampaign& read, std::uint64_t seed,
+                                FleetExplanation& all) {
+  reading::ReadCampaign own = read;
+  for (Observations& o : own.observations)
+    if (!of_parts(o)) o = {};
+  const Campaign& campaign = own.manifest->campaign;
+  std::vector<Alone> out;
+  auto parts = part_models(own, campaign.model);
+  for (std::size_t p = 0; parts && p < parts->size(); ++p) {
+    Alone one{campaign.id, std::move((*parts)[p])};
+    for (const Measurement& m : campaign.measurements)
+      if (m.order == "as-listed") one.ordered.push_back(m.id);
+    if (one.part.unfit.empty() && explain_alone(one, seed, all)) out.push_back(std::move(one));
+  }
+  return out;
+}
+
+/// Explains the parts of each campaign on their own where one model leaves more of all of them than
+/// one model for each: the machine, the fixture or the measuring machine has changed between them.
+void part_what_differs(FleetExplanation& all, const Joined& joined, std::uint64_t seed) {
+  constexpr double differ_below = 0.001;
+  for (const auto& [id, campaigns] : joined) {
+    const auto is = [&](const Alone& one) { return one.campaign == id; };
+    const auto whole = std::find_if(all.alone.begin(), all.alone.end(), is);
+    if (whole == all.alone.end()) continue;
+    std::vector<Alone> each;
+    double squares = 0.0, n = 0.0;
+    for (const reading::ReadCampaign* read : campaigns)
+      for (Alone& one : parts_of_one(*read, seed, all)) {
+        const auto of = static_cast<double>(one.residual.size());
+        squares += of * one.noise * one.noise, n += of;
+        each.push_back(std::move(one));
+      }
+    const double ratio = whole->noise * whole->noise * n / squares;
+    if (!(squares > 0.0) || math::f_upper(ratio, n, n) > differ_below) continue;
+    all.differing.push_back(id);
+    std::erase_if(all.alone, is);
+    std::move(each.begin(), each.end(), std::back_inserter(all.alone));
+  }
 }
 
 }  // namespace
@@ -477,6 +609,9 @@ Expected<FleetExplanation> explain_together(
   });
   Expected<void> trouble;
   FleetExplanation out;
+  std::list<reading::ReadCampaign> made;
+  Joined joined;
+  ordered = join_parts(std::move(ordered), made, joined);
   auto parts = common_parts(ordered, trouble, out);
   if (!trouble) return fail(trouble.error());
   if (parts.empty() && out.alone.empty())
@@ -502,7 +637,11 @@ Expected<FleetExplanation> explain_together(
     }
     const config::Priors priors =
         config::priors_of(fleet, list.front().read->manifest->campaign.machine, t.campaigns);
-    for (PartModel& part : t.parts) use_priors(part, priors);
+    for (PartModel& part : t.parts) {
+      use_priors(part, priors);
+      for (const model::Term& term : part.terms)
+        if (in_some_only(t, term)) std::erase(t.effects, term.name());
+    }
     t.part = (one_kind ? "" : storage::listed(each_once(t.machines)) + " ") + key.axis +
              (key.side.empty() ? "" : " " + key.side);
     NONIO_TRY(t.explanation, model::explain_together(members_of(t), seed));
@@ -514,15 +653,8 @@ Expected<FleetExplanation> explain_together(
     }
     out.together.push_back(std::move(t));
   }
-  std::erase_if(out.alone, [&](Alone& one) {
-    auto explained = explain_part(one.part, seed);
-    if (explained)
-      keep_explanation(one, std::move(*explained));
-    else
-      out.left_out.push_back(one.campaign + " " + one.part.part.name + " (" +
-                             explained.error().message + ")");
-    return !explained;
-  });
+  std::erase_if(out.alone, [&](Alone& one) { return !explain_alone(one, seed, out); });
+  part_what_differs(out, joined, seed);
   return out;
 }
 
@@ -539,7 +671,7 @@ Json next_json(const FleetExplanation& all, const ModelWords& words) {
     for (const model::JointPlan& one : t.explanation.plans)
       list.push_back({&one.plan, t.campaigns[one.campaign], t.part});
   for (const Alone& one : all.alone)
-    for (const model::Plan& plan : one.plans)
+    for (const model::Plan& plan : one.explained.plans)
       list.push_back({&plan, one.campaign, one.part.part.name});
   std::stable_sort(list.begin(), list.end(),
                    [](const Next& a, const Next& b) { return is_better(*a.plan, *b.plan); });
@@ -565,10 +697,19 @@ Json together_json(const FleetExplanation& all, const ModelWords& words, std::ui
   if (parts.size() != 1) json["parts"] = std::move(parts);
   json["next"] = next_json(all, words);
   if (!all.alone.empty()) {
-    Json alone = Json::array();
-    for (const Alone& one : all.alone) alone.push_back(one.campaign + " " + one.part.part.name);
+    Json alone = Json::array(), verdicts = Json::array();
+    for (const Alone& one : all.alone) {
+      alone.push_back(one.campaign + " " + one.part.part.name);
+      const model::Verdict& verdict = one.explained.verdict;
+      verdicts.push_back({{"part", alone.back()}, {"kind", to_text(verdict.kind)}});
+      if (!verdict.effect.empty()) verdicts.back()["effect"] = verdict.effect;
+      if (!one.explained.together.empty()) verdicts.back()["together"] = one.explained.together;
+      verdicts.back()["says"] = words.verdict(one.explained, one.part);
+    }
     json["alone"] = std::move(alone);
+    json["alone_verdicts"] = std::move(verdicts);
   }
+  if (!all.differing.empty()) json["parts_differ"] = all.differing;
   if (!all.left_out.empty()) json["left_out"] = all.left_out;
   json["seed"] = seed;
   Json list = Json::array();

@@ -29,11 +29,13 @@ struct Together {
 };
 
 /// A part of one campaign that is explained on its own: an axis that no other campaign measured, a
-/// circle, lines in space, parts that the machine made, a displacement over time.
+/// circle, lines in space, a displacement over time; and the parts that a machine made, of all its
+/// campaigns.
 struct Alone {
   std::string campaign;
   PartModel part;
-  std::vector<model::Plan> plans{};  ///< that separate what is named from its aliases
+  /// Its plans separate what is named from its aliases; without values for each reading.
+  model::Explanation explained{};
   /// Of parts that the machine made: of each reading with the effects found, and its standard
   /// deviation, m.
   std::vector<double> residual{};
@@ -45,7 +47,8 @@ struct Alone {
 struct FleetExplanation {
   std::vector<Together> together;
   std::vector<Alone> alone;
-  std::vector<std::string> left_out;  ///< "<campaign> <part>", with the reason
+  std::vector<std::string> differing{};  ///< campaigns whose parts do not fit one model: "a, b"
+  std::vector<std::string> left_out;     ///< "<campaign> <part>", with the reason
 };
 
 /// Returns the names without repetitions, in their order.

@@ -224,8 +224,9 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
       if (other == catalogue.end()) continue;
       separates(distance(part.table, f, model, *columns * value, *other, s, before[alias]), alias);
     }
-    if (parts_alike)
-      separates(from_part(part, f, model, *columns, value, s), "part-" + candidate.term.name());
+    if (const std::string& same = candidate.term.effect->of_part; parts_alike && !same.empty())
+      separates(from_part(part, f, model, *columns, value, s),
+                same + ":" + candidate.term.axis.name);
     // The same part moved along an axis without effect on this error shows nothing new.
     if (std::isfinite(plan.power) && !(parts_alike && plan.power < 1.0))
       plans.push_back(std::move(plan));

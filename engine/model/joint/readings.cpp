@@ -115,11 +115,10 @@ class Reader {
       places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
     }
     middle_ = places_.empty() ? 0.0 : (places_.front() + places_.back()) / 2.0;
-    if (places_.size() <= most) return;
-    const double low = places_.front(), high = places_.back();
-    places_.assign(most, low);
-    for (std::size_t i = 0; i < most; ++i)
-      places_[i] += (high - low) * static_cast<double>(i) / static_cast<double>(most - 1);
+    for (std::size_t i = 0; i < most && !places_.empty(); ++i)
+      even_.push_back(places_.front() + (places_.back() - places_.front()) *
+                                            static_cast<double>(i) / static_cast<double>(most - 1));
+    if (places_.size() > most) places_ = even_;
   }
 
   /// Effects that no member has in its model, with the shapes of the member with the most readings.
@@ -270,18 +269,22 @@ class Reader {
     }
   }
 
-  /// Returns orthonormal columns of the zeros and of the member's own model.
-  static Expected<MatrixXd> of_model(const MemberReadings& m, const Whitening& white,
-                                     const Observations& o, const std::vector<Term>& terms,
-                                     double offsets) {
+  /// Returns orthonormal columns of the zeros and of the member's own model. A curve has no constant
+  /// and no slope over the stretch of all members: over its own, a bow would contain the slope of a
+  /// longer one.
+  Expected<MatrixXd> of_model(const MemberReadings& m, const Whitening& white,
+                              const Observations& o, const std::vector<Term>& terms,
+                              double offsets) const {
     std::vector<MatrixXd> parts;
     MatrixXd zeros = MatrixXd::Zero(static_cast<Index>(o.size()), static_cast<Index>(lines_of(o)));
     for (std::size_t i = 0; i < o.size(); ++i)
       zeros(static_cast<Index>(i), static_cast<Index>(line_of(o, i))) = 1.0;
     parts.push_back(std::move(zeros));
     for (const Term& term : terms) {
-      NONIO_TRY(auto columns, columns_of(o, term, term.shape));
-      parts.push_back(std::move(columns));
+      const bool curve = term.effect->curve && joins(term);
+      NONIO_TRY(const auto columns,
+                columns_of(curve ? with_places(o, even_) : o, term, term.shape));
+      parts.push_back(columns.topRows(static_cast<Index>(o.size())));
     }
     MatrixXd all(static_cast<Index>(o.size()), 0);
     for (const MatrixXd& part : parts)
@@ -374,7 +377,8 @@ class Reader {
   static constexpr std::size_t most = 200;  // places that are used, evenly spaced ones if more
   const std::vector<Member>& members_;
   std::vector<double> places_;
-  double middle_ = 0.0;  // of the places of all members, m or rad
+  std::vector<double> even_;  // evenly spaced over the stretch of all members
+  double middle_ = 0.0;       // of the places of all members, m or rad
   std::map<std::size_t, MatrixXd>
       of_places_;  // columns of curves at evenly spaced places, by block
   std::vector<Kept> grounds_;

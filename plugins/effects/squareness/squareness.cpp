@@ -59,6 +59,7 @@ NONIO_PLUGIN(registry) {
              .linear = {{"c", "squareness (ISO 230-1: C0Y, B0Z, A0Z)", Quantity::small_angle}},
              .shapes = {},
              .compensable = true,
+             .of_part = "part-squareness",
              .applies = [](const Observations&, const Axis&) { return true; },
              .columns = columns,
              .instances = of});

@@ -105,6 +105,7 @@ NONIO_PLUGIN(registry) {
              .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid, false}},
              .curve = true,
              .compensable = true,
+             .of_part = "part-straightness",
              .applies = [](const Observations& o, const Axis& a) { return !grid(o, a).empty(); },
              .columns = columns,
              .instances = of});

@@ -130,6 +130,26 @@ class Together(unittest.TestCase):
                 right += verdict["same"] == [effect] and not verdict["differs"]
             self.assertGreaterEqual(right, 2, effect)
 
+    def test_a_bow_over_a_shorter_travel_is_no_scale(self):
+        """A parabola over 10..560 mm has another slope than over 10..790 mm; each campaign's model has its curve."""
+        for k in range(6):
+            last = 790.0 if k < 4 else 560.0
+            rows = ["run,direction,target_mm,deviation_um"]
+            for run in range(1, 6):
+                for way in "+-":
+                    for i in range(11):
+                        x = 10.0 + (last - 10.0) * i / 10
+                        y = 2.0 * ((x - 400.0) / 390.0) ** 2 + (-1.0 if way == "+" else 1.0) + self.rng.gauss(0, 0.25)
+                        rows.append(f"{run},{way},{x:.3f},{y:.4f}")
+            folder = self.site / f"m{k}"
+            folder.mkdir(parents=True)
+            (folder / "x.csv").write_text("\n".join(rows) + "\n")
+            (folder / "campaign.toml").write_text(
+                f'format = 1\n[campaign]\nid = "m{k}"\ndate = 202{k}-03-11\n[machine]\nserial = "1"\n[machine.axes.X]\nkind = "linear"\n'
+                '[[measurement]]\nid = "x"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n'
+                '[model]\neffects = ["backlash:X", "pitch-curve:X"]\n')
+        self.assertNotIn("scale:X", [e["effect"] for e in self.answer()["effects"]])
+
     def test_an_effect_that_appears(self):
         right = 0  # each decision errs in one of a hundred fleets by its level: in two of three fleets it may not
         for n in range(3):
@@ -205,6 +225,14 @@ class Together(unittest.TestCase):
         answer = self.answer()
         self.assertEqual((answer["verdict"]["kind"], answer["effects"]), ("nothing", []))
 
+    def test_an_effect_of_some_models_only_is_searched_in_all(self):
+        fleet.fleet(self.site, "shared", "backlash:X", 3.0, 2, 0.0, self.rng)
+        manifest = self.site / "c0000" / "campaign.toml"
+        manifest.write_text(manifest.read_text() + '[model]\neffects = ["backlash:X"]\n')
+        answer = self.answer()
+        self.assertEqual(answer["verdict"]["same"], ["backlash:X"])
+        self.assertEqual(answer["model"]["effects"], [])
+
     def test_the_model_of_each_campaign_is_taken_off(self):
         fleet.fleet(self.site, "shared", "backlash:X", 1.0, 6, 0.0, self.rng)
         for manifest in self.site.glob("*/campaign.toml"):
@@ -244,7 +272,7 @@ class Together(unittest.TestCase):
             self.assertEqual([c["campaign"] for c in each[part]["campaigns"]], [f"c{n:04d}" for n in range(first, first + 4)])
             self.assertEqual(effect["per_campaign"], "shared")
         alone = " ".join(explain(self.site / "c0000", self.site / "c0004").stdout.split())
-        self.assertIn("or of machines of the same stated maker and model, measured it: c0000 X, c0004 X.", alone)
+        self.assertIn("runs also of machines of the same stated maker and model): c0000 X, c0004 X.", alone)
         self.replace(manifests, 'asset = ', 'model = "VM 1"\nasset = ')
         together = self.answer()
         self.assertEqual((together["part"], together["machines"]), ("X", ["M-1", "M-2"]))
