@@ -90,9 +90,7 @@ Verb compare_verb(Common& common) {
                   "time, reading, model, residual, weight"}),
            {.name = "--model-of",
             .target = &options->model_of,
-            .help =
-                "Predict this campaign with the model of another one, fitted there: displacements "
-                "over time only",
+            .help = "Predict this campaign with the model of another one, fitted there",
             .takes = Argument::Takes::folder,
             .exists = true},
            one_of({"free", "kept"},

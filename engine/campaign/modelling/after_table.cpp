@@ -42,6 +42,26 @@ AfterTable::Positioning positioning(const Observations& readings) {
   return {result.E, result.A, result.R};
 }
 
+/// Returns the prediction of a term that one table of the axis can compensate. Of values of each
+/// measurement, such as of several lines, this is their mean; `name` is then without the group.
+std::vector<double> of_one_table(const model::Part& part, const model::Fit& fit, std::size_t t,
+                                 std::string& name) {
+  model::Term term = fit.terms[t];
+  if (!term.grouping || term.grouping->by != "measurement" || term.differences) return fit.part[t];
+  const auto columns = term.effect->columns(part.table, term.axis, term.shape);
+  if (!columns || columns->empty()) return fit.part[t];
+  std::vector<double> mean(columns->size(), 0.0);
+  std::size_t values = 0;
+  const auto groups = static_cast<double>(term.grouping->name.size());
+  for (const model::Parameter& p : fit.parameters)
+    if (p.effect == name && !p.shape) mean[values++ % mean.size()] += p.value / groups;
+  term.grouping.reset(), name = term.name();
+  std::vector<double> out(part.table.size(), 0.0);
+  for (std::size_t c = 0; c < mean.size(); ++c)
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] += mean[c] * (*columns)[c][i];
+  return out;
+}
+
 }  // namespace
 
 AfterTable after_table(const PartModel& model, const model::Fit& fit) {
@@ -51,8 +71,9 @@ AfterTable after_table(const PartModel& model, const model::Fit& fit) {
   std::vector<double> left = measured;
   for (std::size_t t = 0; t < fit.terms.size(); ++t) {
     if (!fit.terms[t].effect->compensable) continue;
-    out.effects.push_back(fit.terms[t].name());
-    for (std::size_t i = 0; i < left.size(); ++i) left[i] -= fit.part[t][i];
+    std::string& name = out.effects.emplace_back(fit.terms[t].name());
+    const std::vector<double> said = of_one_table(part, fit, t, name);
+    for (std::size_t i = 0; i < left.size(); ++i) left[i] -= said[i];
   }
   out.rms_before = rms_of(part.table, measured, fit);
   out.rms = rms_of(part.table, left, fit);

@@ -187,10 +187,16 @@ class Next {
 
   void plan() {
     if (e_.plans.empty()) return;
+    if (is_circle() && is_one_way()) return circle();
     const auto good = std::find_if(e_.plans.begin(), e_.plans.end(),
                                    [](const model::Plan& p) { return p.separates(); });
     if (good != e_.plans.end()) return out_.push_back(plan_finding(*good));
     if (part_.part.kind == model::Part::Kind::course) return;
+    const auto& lines = part_.part.table.lines;
+    if (std::any_of(lines.begin(), lines.end(),
+                    [](const auto& l) { return !l.body.empty() && !l.body_size_known; }))
+      return add("part-size", {},
+                 {{"one", e_.plans.front().one}, {"other", e_.plans.front().other}});
     const auto [low, high] = std::minmax_element(part_.part.along.begin(), part_.part.along.end());
     add("wider",
         {{"from", *low, part_.position()},
@@ -226,13 +232,12 @@ class Next {
     return paths.size() == lines.size();
   }
 
-  void circle() {
+  bool is_one_way() const {
     const auto& way = part_.part.way;
-    if (std::equal(way.begin() + 1, way.end(), way.begin()))
-      add("circle-other-way");
-    else
-      add("circle-other-radius");
+    return std::equal(way.begin() + 1, way.end(), way.begin());
   }
+
+  void circle() { add(is_one_way() ? "circle-other-way" : "circle-other-radius"); }
 
   void time(const model::Place& place) {
     const Observations& o = part_.part.table;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "campaign/modelling/after_table.h"
 #include "campaign/modelling/held_terms.h"
@@ -191,6 +192,18 @@ void put_after_table(storage::Json& json, const PartModel& part, const model::Fi
   json["after_table"] = std::move(one);
 }
 
+/// Measurements along a path, sensed across it, whose feed is not stated.
+std::vector<std::string> unstated_feed(const model::Part& part) {
+  const Observations& o = part.table;
+  std::set<std::string> out;
+  for (std::size_t i = 0; i < o.size() && !o.sense.empty(); ++i) {
+    const auto& line = o.lines[o.line_of(i)];
+    if (!line.feed && line.body.empty() && o.sense[i] != line.sense)
+      out.insert(part.measurements[part.measurement[i]]);
+  }
+  return {out.begin(), out.end()};
+}
+
 /// Returns the warnings about a fit as sentences: values below their uncertainty, gains that are
 /// too large, parameters that are not identifiable, positions or orders that are not stated,
 /// interpolated temperatures, channels that are not used, interrupted displacements, time constants
@@ -209,6 +222,8 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
   if (part.part.kind == model::Part::Kind::space) {
     if (const auto unstated = model::unstated_positions(part.part); !unstated.empty())
       out.push_back(words.unstated_position(unstated));
+    if (const auto unstated = unstated_feed(part.part); !unstated.empty())
+      out.push_back(words.unstated_feed(unstated));
     for (std::string& said : words.squareness_places(fit)) out.push_back(std::move(said));
   }
   for (const std::string& measurement : part.part.order_assumed)

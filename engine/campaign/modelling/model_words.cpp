@@ -90,6 +90,21 @@ std::string ModelWords::statement(const model::Statement& s, Quantity q) const {
               numbers, {});
 }
 
+namespace {
+
+/// The effect of the parts that a plan separates from the missing one, which is then no alias.
+std::string same_of_part(const model::Explanation& e) {
+  if (e.verdict.kind != Kind::missing || e.candidates.empty()) return {};
+  const model::Candidate& first = e.candidates.front();
+  for (const model::Plan& plan : e.plans)
+    if (const std::string& same = first.term.effect->of_part;
+        !same.empty() && plan.other == same + ":" + first.term.axis.name)
+      return plan.other;
+  return {};
+}
+
+}  // namespace
+
 std::string ModelWords::verdict(const model::Explanation& e, const PartModel& part) const {
   std::string text = finding_text(templates_, language_, verdict_finding(e, part), "says");
   if (e.verdict.kind == Kind::missing && !e.candidates.empty() &&
@@ -98,6 +113,8 @@ std::string ModelWords::verdict(const model::Explanation& e, const PartModel& pa
   if (e.one_growth && e.verdict.kind == Kind::missing)
     text += " " + says("one-growth", {{"at", e.one_growth->at, Quantity::length}},
                        {{"growth", e.one_growth->growth}, {"drift", e.one_growth->drift}});
+  if (const std::string other = same_of_part(e); !other.empty())
+    text += " " + says("or-of-part", {}, {{"other", other}});
   std::string replaceable;
   for (const model::Replaceable& r : e.replaceable)
     replaceable +=
@@ -158,7 +175,11 @@ std::string ModelWords::cancelling(const std::string& one, const std::string& ot
 
 std::string ModelWords::plan(const model::Plan& plan) const {
   std::string text = finding_text(templates_, language_, plan_finding(plan), "says");
-  return text.empty() ? plan.id : text;
+  if (text.empty()) return plan.id;
+  return plan.separates()
+             ? text
+             : text + " " +
+                   says("plan.too-little", {{"enough", model::enough_power, Quantity::number}}, {});
 }
 
 std::string ModelWords::no_sign(const model::Explanation& e, const PartModel& part) const {
@@ -273,9 +294,11 @@ std::vector<std::string> ModelWords::scales(const PartModel& part, const model::
 }
 
 std::string ModelWords::unstated_position(const std::vector<std::string>& measurements) const {
-  std::string which;
-  for (const std::string& one : measurements) which += (which.empty() ? "" : ", ") + one;
-  return says("unstated-position", {}, {{"which", which}});
+  return says("unstated-position", {}, {{"which", storage::listed(measurements)}});
+}
+
+std::string ModelWords::unstated_feed(const std::vector<std::string>& measurements) const {
+  return says("unstated-feed", {}, {{"which", storage::listed(measurements)}});
 }
 
 std::vector<std::string> ModelWords::squareness_places(const model::Fit& fit) const {

@@ -62,6 +62,7 @@ class ModelWords {
   std::vector<std::string> scales(const PartModel& part, const model::Fit& fit,
                                   const Campaign& campaign) const;
   std::string unstated_position(const std::vector<std::string>& measurements) const;
+  std::string unstated_feed(const std::vector<std::string>& measurements) const;
   /// Where the angle of each squareness applies, if angular errors turn the same axis.
   std::vector<std::string> squareness_places(const model::Fit& fit) const;
   std::string unmeasured(const std::string& effect) const;

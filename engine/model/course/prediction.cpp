@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "course.h"
@@ -138,10 +139,14 @@ Part related(Part unseen, const Part& seen) {
   return unseen;
 }
 
-bool leaves_range(const Part& seen, const Part& unseen) {
+/// Whether a channel of the model leaves the values that it had while the model was fitted.
+bool leaves_range(const Part& seen, const std::vector<Term>& model, const Part& unseen) {
+  std::set<std::string> used;
+  for (const Term& term : model)
+    for (const std::string& name : channels_of(term, seen.table)) used.insert(name);
   for (const auto& c : unseen.table.channels) {
     const auto* known = seen.table.channel(c.name);
-    if (known == nullptr) continue;
+    if (known == nullptr || !used.contains(c.name)) continue;
     const auto in = [](const Part& part, const Observations::Channel& channel) {
       double low = std::numeric_limits<double>::infinity(), high = -low;
       for (std::size_t i = 0; i < channel.time.size(); ++i)
@@ -273,7 +278,7 @@ Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, c
   }
   out->inside = static_cast<double>(inside) / static_cast<double>(out->u.size());
   out->fails_from = fails_from(unseen.table.time, *out, zero_kept);
-  out->outside = leaves_range(seen, unseen);
+  out->outside = leaves_range(seen, model, unseen);
   return out;
 }
 

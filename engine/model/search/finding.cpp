@@ -404,6 +404,17 @@ class Finder {
     }
   }
 
+  State without_weakest() const {
+    State out;
+    for (const std::size_t b : f_.best.blocks) {
+      const std::size_t e = f_.bench->effect_of(b);
+      if (e < f_.in_model) continue;
+      State rest = f_.bench->settled(f_.bench->without(f_.best, e));
+      if (out.blocks.empty() || rest.squares < out.squares) out = std::move(rest);
+    }
+    return out;
+  }
+
   Expected<void> fit_both() {
     auto of_model = fit_near(f_.part.table, terms_of_state(f_.start), flags(f_.start, true),
                              f_.weight, f_.noise);
@@ -411,14 +422,17 @@ class Finder {
       of_model = with_its_zero(f_.part.table, std::move(*of_model), flags(f_.start, true));
     if (!of_model) return fail(of_model.error());
     f_.of_model = comparison_of(f_.part, f_.repeats, std::move(*of_model), f_.suspects);
-    if (f_.best.blocks == f_.start.blocks) {  // nothing was found
-      f_.of_best = f_.of_model;
-      return {};
+    // Effects that the grid of a shape separates may not be separable where the shape is fitted.
+    Expected<Fit> of_best = fail("nothing was found");
+    while (!of_best) {
+      if (f_.best.blocks == f_.start.blocks) {
+        f_.of_best = f_.of_model;
+        return {};
+      }
+      of_best = fit_near(f_.part.table, terms_of_state(f_.best), flags(true), f_.weight, f_.noise);
+      if (of_best) of_best = with_its_zero(f_.part.table, std::move(*of_best), flags(true));
+      if (!of_best) f_.best = without_weakest();
     }
-    auto of_best =
-        fit_near(f_.part.table, terms_of_state(f_.best), flags(true), f_.weight, f_.noise);
-    if (of_best) of_best = with_its_zero(f_.part.table, std::move(*of_best), flags(true));
-    if (!of_best) return fail(of_best.error());
     f_.of_best = comparison_of(f_.part, f_.repeats, std::move(*of_best), f_.suspects);
     return {};
   }

@@ -272,8 +272,22 @@ class Worker {
                           .scale = 1.0 / metre});
   }
 
+  /// A sensor that was touched states nothing about the machine at rest.
+  bool jumps(const Followed& f) {
+    const std::vector<math::Jump> found = math::jumps_of(f.run);
+    for (const math::Jump& jump : found)
+      out_.findings.push_back({.id = "thermal.jump",
+                               .attention = true,
+                               .evidence = {{"jump", jump.size, quantity_of(f)},
+                                            minutes("from_min", f.run.time[jump.before]),
+                                            minutes("to_min", f.run.time[jump.before + 1])},
+                               .texts = {{"sensor", f.name}}});
+    return !found.empty();
+  }
+
   void one(const Followed& f) {
     if (f.run.size() < 2) return;
+    if (tracks_.test == Test::etve && jumps(f)) return;
     put_ranges(f);
     if (tracks_.test != Test::spindle) return;
     put_end(f, "end", f.run);
@@ -283,8 +297,10 @@ class Worker {
     put_constants(f.name, f.run, 1.0, tracks_.deviation, 1.0);
   }
 
+  /// `lever` of a growth: distance at which its rest is judged, m; `start`: time of the first
+  /// reading after the start of the heating, s, at which c is 0.
   TimeConstants put_constants(const std::string& name, const Track& k, double lever,
-                              Quantity quantity, double scale) {
+                              Quantity quantity, double scale, double start = 0.0) {
     const TimeConstants fit = math::time_constants(k);
     using Answer = TimeConstants::Answer;
     if (fit.answer != Answer::resolved) {
@@ -294,22 +310,23 @@ class Worker {
     for (std::size_t i = 0; i < fit.parts.size(); ++i) {
       const auto& p = fit.parts[i];
       const std::string number = i == 0 ? "" : "2";
+      const double before = std::exp(start / p.tau);
       out_.items.push_back({.name = "tau" + number + "_" + name,
                             .value = p.tau,
                             .quantity = Quantity::time,
                             .u = p.u_tau,
                             .dof = fit.dof});
       out_.items.push_back({.name = "c" + number + "_" + name,
-                            .value = p.c,
+                            .value = before * p.c,
                             .quantity = quantity,
-                            .u = p.u_c,
+                            .u = before * p.u_c,
                             .dof = fit.dof,
-                            .to = p.c * lever,
+                            .to = before * p.c / scale,
                             .scale = scale});
     }
     if (!is_angular()) {
       const auto t = fit.settled(wish_.remaining / lever);
-      if (t.t >= slowest_) slowest_ = t.t, slowest_u_ = t.u, slowest_name_ = name;
+      if (start + t.t >= slowest_) slowest_ = start + t.t, slowest_u_ = t.u, slowest_name_ = name;
     }
     put_curve(name, fit, k);
     return fit;
@@ -399,9 +416,15 @@ class Worker {
     const Track g = math::growth(tracks_.visits);
     if (g.size() < 2) return once("thermal.one-target", {});
     double low = INFINITY, high = -INFINITY;
-    for (const auto& v : tracks_.visits)
+    double farthest = 0.0;
+    for (const auto& v : tracks_.visits) {
       low = std::min(low, v.position), high = std::max(high, v.position);
+      farthest = std::max(farthest, std::fabs(v.track.d.back() - v.track.d.front()));
+    }
     const double L = high - low;
+    // The target that moves most is beyond the travel where the fixed point is, and half of it where
+    // this is in the middle.
+    const double lever = g.d.back() != 0.0 ? farthest / std::fabs(g.d.back()) : L;
     const auto noise = math::reading_noise(g);
     out_.items.push_back({.name = "growth_" + m_.axis,
                           .value = g.d.back(),
@@ -414,7 +437,8 @@ class Worker {
     Series s{
         "growth_" + m_.axis, "t", Quantity::time, Quantity::deviation_per_length, g.time, g.d, {}};
     out_.series.push_back(std::move(s));
-    const TimeConstants fit = put_constants(m_.axis, g, L, Quantity::deviation_per_length, 1.0 / L);
+    const TimeConstants fit =
+        put_constants(m_.axis, g, lever, Quantity::deviation_per_length, 1.0 / L, g.time.front());
     if (fit.answer == TimeConstants::Answer::resolved)
       propose_effect(fit, g.time.front(), low, high);
   }

@@ -98,6 +98,32 @@ TEST(Thermal, AMachineAtRestHasRangesAndProposesADrift) {
   EXPECT_EQ(loaded.notes.back().id, "method.thermal-loaded");
 }
 
+TEST(Thermal, ASensorThatWasTouchedProposesNoDrift) {
+  const Made t = at_rest({"X", "Y"}, 145, 300.0, [](std::size_t sensor, double time) {
+    const double slow = 1e-6 * std::sin(2.0 * std::numbers::pi * time / 43200.0);
+    return slow + (sensor == 1 && time > 20000.0 ? 9e-6 : 0.0);
+  });
+  const auto e = evaluated(thermal(), t);
+  const Finding* f = finding(e, "thermal.jump");
+  ASSERT_NE(f, nullptr);
+  EXPECT_NEAR(evidence(*f, "jump"), 9e-6, 0.2e-6);
+  EXPECT_EQ(value(e, "window_Y"), nullptr);
+  const Finding* proposal = finding(e, "thermal.drift-proposal");
+  ASSERT_NE(proposal, nullptr);
+  EXPECT_EQ(evidence(*proposal, "drift"), value(e, "window_X")->value);
+}
+
+TEST(Thermal, APauseIsNoJump) {
+  Made t = at_rest({"X"}, 145, 120.0, [](std::size_t, double time) {
+    return 0.6e-9 * (time > 7200.0 ? time + 4000.0 : time);  // 2.2 um/h
+  });
+  for (double& time : t.o.time)
+    if (time > 7200.0) time += 4000.0;
+  const auto e = evaluated(thermal(), t);
+  EXPECT_EQ(finding(e, "thermal.jump"), nullptr);
+  ASSERT_NE(value(e, "window_X"), nullptr);
+}
+
 TEST(Thermal, ShiftTurnAndOrderOfRowsChangeNothing) {
   Random r(11);
   const MadeSpindle m = warming(r, 0.1e-6, 0.0);
@@ -179,11 +205,25 @@ TEST(Thermal, AnAxisThatGrowsProposesTheEffectOfTheModel) {
   // The first cycle is 0: at 22.5 s in the mean.
   EXPECT_NEAR(value(e, "growth_X")->value, 40e-6 * std::exp(-22.5 / 1500.0), 0.3e-6);
   EXPECT_NEAR(value(e, "end_X")->value, 40e-6 * 0.65 * std::exp(-15.0 / 1500.0), 0.25e-6);
+  EXPECT_NEAR(value(e, "c_X")->value, 40e-6, 0.25e-6) << "from the start, not from the first cycle";
   const Finding* f = finding(e, "thermal.for-the-model");
   ASSERT_NE(f, nullptr);
   EXPECT_NEAR(evidence(*f, "w"), 40e-6, 0.25e-6);
   EXPECT_NEAR(evidence(*f, "fixed"), 0.25, 0.01);
   EXPECT_NEAR(value(e, "reversal_X")->value, 0.0, 1e-6);
+}
+
+TEST(Thermal, TheWarmUpLastsUntilTheTargetThatMovesMostIsSettled) {
+  Random r(10);
+  // The fixed point is outside of the travel: the target at 0.1 m moves by 55 um.
+  const auto e = evaluated(thermal(), exercised(50e-6, 1800.0, 1.2, 0.05e-6, 240, r));
+  const Finding* f = finding(e, "thermal.warm-up-time");
+  ASSERT_NE(f, nullptr);
+  EXPECT_NEAR(evidence(*f, "time_min"), 1800.0 * std::log(55.0) / 60.0, 1.5);
+  const auto middle = evaluated(thermal(), exercised(50e-6, 1800.0, 0.5, 0.05e-6, 240, r));
+  f = finding(middle, "thermal.warm-up-time");
+  ASSERT_NE(f, nullptr);
+  EXPECT_NEAR(evidence(*f, "time_min"), 1800.0 * std::log(20.0) / 60.0, 1.5);
 }
 
 TEST(Thermal, OfOneTargetThereIsNoGrowth) {

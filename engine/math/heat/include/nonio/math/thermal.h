@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -52,6 +53,16 @@ ReadingNoise reading_noise(const Track&);
 /// Growth of the range of `d`, m, if noise of standard deviation s, m, is added once more. The
 /// noise in `d` has increased its range by up to 1/(sqrt 2 - 1) times this result.
 double range_excess(std::span<const double> d, double s);
+
+/// A change of the sensor between two readings that is faster than heat moves a machine.
+struct Jump {
+  std::size_t before = 0;  ///< index of the last reading before it
+  double size = 0.0;       ///< m
+};
+/// None if there are more than five, which are how the machine moves. `moves_at_once` states whether
+/// a speed or a load changes between two times, s, and moves the machine.
+std::vector<Jump> jumps_of(const Track&,
+                           const std::function<bool(double, double)>& moves_at_once = {});
 
 struct TimeConstants {
   enum class Answer {
