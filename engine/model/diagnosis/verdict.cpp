@@ -167,8 +167,8 @@ class Judge {
   /// with less evidence than `least_against_zero`, `steady`.
   Noise::Zero unsteady_zero() const {
     if (out_.together.empty() || f_.noise.zero != Noise::Zero::steady) return Noise::Zero::steady;
-    // In the seconds of a circle no zero walks; what its effects leave, such as reversal spikes, is
-    // smooth in its order.
+    // A circle takes seconds, too short for a random walk of the zero; what its effects leave, such
+    // as reversal spikes, is smooth in its order.
     if (is_circle_without_times(f_.part.table)) return Noise::Zero::steady;
     const Noise::Zero instead = better_zero(f_.of_model.fit.terms, f_.start);
     if (instead != Noise::Zero::steady) return instead;

@@ -57,6 +57,7 @@ static Expected<Effect::Columns> of_reversal(const Observations& o, const Axis& 
 
 /// At least six readings per knot.
 static std::vector<double> knots(const Observations& o, const Axis& axis) {
+  if (is_circle_without_times(o)) return {};
   const auto r = readings_of(o, axis);
   if (!r || !(r->duration > 0.0)) return {};
   std::vector<double> all;

@@ -114,6 +114,19 @@ class HistoryVerbs(VerbTest):
         self.assertEqual([(line["kind"], line["quantity"]) for line in lines if line["kind"] == "soon"], [("soon", "A")], lines)
         self.assertNotIn("Keep the date", self.nonio("machine", "history", self.out, "S-0042").stdout)
 
+    def test_a_value_is_forecast_against_the_limit_of_its_own_measurement(self):
+        for k in range(6):
+            name, day = f"c{k}", f"{2022 + k // 2}-0{1 + 6 * (k % 2)}-10"
+            self.write(name, day, k + 1, noise=0.1, scale=50)
+            (self.site / name / "low.csv").write_text(readings(seed=100 + k, noise=0.1, scale=15))
+            file = self.site / name / "campaign.toml"
+            text = file.read_text().replace('[[measurement]]\nid = "X"\n', '[[measurement]]\nid = "X low"\nkind = "axis"\naxis = "X"\nfile = "low.csv"\n'
+                                            'tolerance_um = { A = 9.0 }\n[[measurement]]\nid = "X top"\ntolerance_um = { A = 25.0 }\n')
+            file.write_text(text + BUDGET)
+        self.night(date="2024-08-01")
+        lines = json.loads((self.out / "summary.json").read_text())["lines"]
+        self.assertEqual([line for line in lines if line["kind"] in ("soon", "out", "changed")], [])
+
     def test_the_date_is_kept_where_all_are_steady(self):
         limit = "tolerance_um = { A = 24.5, B = 8.0 }\n"
         _, lines = self.years(['"none"'] * 7, [limit] * 7, [{"scale": 50.0}] * 7, "2025-02-01")
