@@ -54,6 +54,51 @@ std::optional<Observations> in_bodies(const Observations& o) {
   return out;
 }
 
+namespace {
+
+/// `in_bodies`; for an effect of one axis, std::nullopt if some readings are of no body.
+std::optional<Observations> for_effect(const Effect& of, const Observations& o) {
+  const auto free = [](const Observations::Line& l) { return l.body.empty(); };
+  if (!of.instances && std::any_of(o.lines.begin(), o.lines.end(), free)) return std::nullopt;
+  return in_bodies(o);
+}
+
+}  // namespace
+
+Effect in_frame_of_parts(const Effect& of, Info info) {
+  Effect out = of;
+  out.info = std::move(info);
+  out.compensable = false, out.of_part.clear(), out.why_not = {};
+  out.instances = [of](const Observations& o) -> std::vector<std::string> {
+    const auto in = for_effect(of, o);
+    if (!in) return {};
+    return of.instances ? of.instances(*in) : std::vector<std::string>{"X", "Y"};
+  };
+  for (Effect::Shape& shape : out.shapes)
+    shape.grid = [of, grid = shape.grid](const Observations& o, const Axis& axis) {
+      const auto in = for_effect(of, o);
+      return in ? grid(*in, axis) : std::vector<double>();
+    };
+  out.applies = [of](const Observations& o, const Axis& axis) {
+    const auto in = for_effect(of, o);
+    return in && of.applies(*in, axis);
+  };
+  out.columns = [of, name = out.info.name](const Observations& o, const Axis& axis,
+                                           const std::vector<double>& shape) {
+    const auto in = for_effect(of, o);
+    const std::size_t k = coordinate_of(axis.name);
+    if (!in || (!of.instances && k > 1))
+      return Expected<Effect::Columns>(
+          fail(name + ": expected parts that were turned by different angles"));
+    auto columns = of.columns(*in, axis, shape);
+    // Of an axis, the component along the direction of sensing.
+    for (std::size_t c = 0; columns && !of.instances && c < columns->size(); ++c)
+      for (std::size_t i = 0; i < o.size(); ++i) (*columns)[c][i] *= in->sense[i][k];
+    return columns;
+  };
+  return out;
+}
+
 bool of_ball_centres(const Observations& o) {
   return !o.angular && !o.axes.empty() && o.axes.front().rotary;
 }

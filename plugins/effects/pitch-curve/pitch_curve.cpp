@@ -3,9 +3,6 @@
 // (nonio/math/spline.h), dimensionless, rms 1 over the targets; p: position from the center of the
 // measured range, m or rad; c_k: m or rad.
 // part-pitch-curve: the same in the frame of a part, if parts were turned by different angles.
-#include <algorithm>
-#include <optional>
-
 #include "nonio/math/spline.h"
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
@@ -43,58 +40,24 @@ static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis
   return columns;
 }
 
-/// Readings in the frame of the parts; std::nullopt if some readings are of no part.
-static std::optional<Observations> all_in_bodies(const Observations& o) {
-  const bool all = std::all_of(o.lines.begin(), o.lines.end(),
-                               [](const Observations::Line& l) { return !l.body.empty(); });
-  return all ? in_bodies(o) : std::nullopt;
-}
-
-static std::vector<double> grid_of_bodies(const Observations& o, const Axis& axis) {
-  const auto in = all_in_bodies(o);
-  return in ? grid(*in, axis) : std::vector<double>();
-}
-
-static std::vector<std::string> of_bodies(const Observations& o) {
-  return all_in_bodies(o) ? std::vector<std::string>{"X", "Y"} : std::vector<std::string>();
-}
-
-static Expected<Effect::Columns> columns_of_bodies(const Observations& o, const Axis& axis,
-                                                   const std::vector<double>& shape) {
-  const auto in = all_in_bodies(o);
-  const std::size_t k = coordinate_of(axis.name);
-  if (!in || k > 1)
-    return fail("part-pitch-curve: expected X or Y of parts that were turned by different angles");
-  NONIO_TRY(auto out, columns(*in, axis, shape));
-  for (auto& column : out)
-    for (std::size_t i = 0; i < column.size(); ++i) column[i] *= in->sense[i][k];
-  return out;
-}
-
 NONIO_PLUGIN(registry) {
-  registry.add(Effect{.info = {"pitch-curve", "1.0.0",
-                               "Smooth pitch error of screw or scale, without constant and slope"},
-                      .linear = {{"s", "rms of the curve over the targets", Quantity::deviation,
-                                  Quantity::angular_deviation}},
-                      .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid, false}},
-                      .curve = true,
-                      .compensable = true,
-                      .of_part = "part-pitch-curve",
-                      .applies = applies,
-                      .columns = columns,
-                      .why_not = [](const Observations& o, const Axis& axis) {
-                        return WhyNot{readings_of(o, axis) ? "few-targets" : ""};
-                      }});
-  registry.add(Effect{
-      .info = {"part-pitch-curve", "1.0.0",
-               "A position error that turns with the part: of fixture or measuring machine"},
-      .linear = {{"s", "rms of the curve over the places", Quantity::deviation}},
-      .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid_of_bodies, false}},
-      .curve = true,
-      .compensable = false,
-      .applies = [](const Observations& o, const Axis& a) { return !grid_of_bodies(o, a).empty(); },
-      .columns = columns_of_bodies,
-      .instances = of_bodies});
+  const Effect curve{.info = {"pitch-curve", "1.0.0",
+                              "Smooth pitch error of screw or scale, without constant and slope"},
+                     .linear = {{"s", "rms of the curve over the targets", Quantity::deviation,
+                                 Quantity::angular_deviation}},
+                     .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid, false}},
+                     .curve = true,
+                     .compensable = true,
+                     .of_part = "part-pitch-curve",
+                     .applies = applies,
+                     .columns = columns,
+                     .why_not = [](const Observations& o, const Axis& axis) {
+                       return WhyNot{readings_of(o, axis) ? "few-targets" : ""};
+                     }};
+  registry.add(curve);
+  registry.add(in_frame_of_parts(
+      curve, {"part-pitch-curve", "1.0.0",
+              "A position error that turns with the part: of fixture or measuring machine"}));
 }
 
 }  // namespace nonio::pitch_curve

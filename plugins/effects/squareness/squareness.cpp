@@ -39,39 +39,23 @@ Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
   return fail("squareness: expected XY, XZ or YZ, found " + axis.name);
 }
 
-std::vector<std::string> of_bodies(const Observations& o) {
-  const auto in = in_bodies(o);
-  return in ? of(*in) : std::vector<std::string>();
-}
-
-Expected<Effect::Columns> columns_of_bodies(const Observations& o, const Axis& axis,
-                                            const std::vector<double>& shape) {
-  const auto in = in_bodies(o);
-  return in ? columns(*in, axis, shape)
-            : fail("part-squareness: expected parts that were turned by different angles");
-}
-
 }  // namespace
 
 NONIO_PLUGIN(registry) {
+  const Effect squareness{
+      .info = {"squareness", "1.0.0", "Two axes that are not square to each other"},
+      .linear = {{"c", "squareness (ISO 230-1: C0Y, B0Z, A0Z)", Quantity::small_angle}},
+      .shapes = {},
+      .compensable = true,
+      .of_part = "part-squareness",
+      .applies = [](const Observations&, const Axis&) { return true; },
+      .columns = columns,
+      .instances = of};
+  registry.add(squareness);
   registry.add(
-      Effect{.info = {"squareness", "1.0.0", "Two axes that are not square to each other"},
-             .linear = {{"c", "squareness (ISO 230-1: C0Y, B0Z, A0Z)", Quantity::small_angle}},
-             .shapes = {},
-             .compensable = true,
-             .of_part = "part-squareness",
-             .applies = [](const Observations&, const Axis&) { return true; },
-             .columns = columns,
-             .instances = of});
-  registry.add(
-      Effect{.info = {"part-squareness", "1.0.0",
-                      "A squareness that turns with the part: of fixture or measuring machine"},
-             .linear = {{"c", "squareness in the frame of the part", Quantity::small_angle}},
-             .shapes = {},
-             .compensable = false,
-             .applies = [](const Observations&, const Axis&) { return true; },
-             .columns = columns_of_bodies,
-             .instances = of_bodies});
+      in_frame_of_parts(squareness, {"part-squareness", "1.0.0",
+                                     "A squareness that turns with the part: of fixture or "
+                                     "measuring machine"}));
 }
 
 }  // namespace nonio::squareness

@@ -78,47 +78,24 @@ Expected<Effect::Columns> columns(const Observations& o, const Axis& place,
   return out;
 }
 
-std::vector<std::string> of_bodies(const Observations& o) {
-  const auto in = in_bodies(o);
-  return in ? of(*in) : std::vector<std::string>();
-}
-
-std::vector<double> grid_of_bodies(const Observations& o, const Axis& place) {
-  const auto in = in_bodies(o);
-  return in ? grid(*in, place) : std::vector<double>();
-}
-
-Expected<Effect::Columns> columns_of_bodies(const Observations& o, const Axis& place,
-                                            const std::vector<double>& shape) {
-  const auto in = in_bodies(o);
-  return in ? columns(*in, place, shape)
-            : fail("part-straightness: expected parts that were turned by different angles");
-}
-
 }  // namespace
 
 NONIO_PLUGIN(registry) {
-  registry.add(
-      Effect{.info = {"straightness", "1.0.0",
-                      "An axis that does not travel straight: a smooth error across its motion"},
-             .linear = {{"s", "rms of the curve over the places", Quantity::deviation}},
-             .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid, false}},
-             .curve = true,
-             .compensable = true,
-             .of_part = "part-straightness",
-             .applies = [](const Observations& o, const Axis& a) { return !grid(o, a).empty(); },
-             .columns = columns,
-             .instances = of});
-  registry.add(Effect{
-      .info = {"part-straightness", "1.0.0",
-               "A bow that turns with the part: of fixture, clamping or measuring machine"},
+  const Effect straightness{
+      .info = {"straightness", "1.0.0",
+               "An axis that does not travel straight: a smooth error across its motion"},
       .linear = {{"s", "rms of the curve over the places", Quantity::deviation}},
-      .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid_of_bodies, false}},
+      .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid, false}},
       .curve = true,
-      .compensable = false,
-      .applies = [](const Observations& o, const Axis& a) { return !grid_of_bodies(o, a).empty(); },
-      .columns = columns_of_bodies,
-      .instances = of_bodies});
+      .compensable = true,
+      .of_part = "part-straightness",
+      .applies = [](const Observations& o, const Axis& a) { return !grid(o, a).empty(); },
+      .columns = columns,
+      .instances = of};
+  registry.add(straightness);
+  registry.add(in_frame_of_parts(
+      straightness, {"part-straightness", "1.0.0",
+                     "A bow that turns with the part: of fixture, clamping or measuring machine"}));
 }
 
 }  // namespace nonio::straightness

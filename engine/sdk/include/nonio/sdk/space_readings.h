@@ -52,6 +52,10 @@ SpaceReadings space_of(const Observations& o);
 /// own errors are then not separable from those of the machine.
 std::optional<Observations> in_bodies(const Observations& o);
 
+/// Returns the same error in the frame of parts that were turned by different angles: of fixture or
+/// measuring machine, so not compensable. Of an effect of one axis, all readings must be of parts.
+Effect in_frame_of_parts(const Effect& of, Info info);
+
 /// Whether the readings are centers of a ball on a rotary axis: lengths, measured over an angle.
 bool of_ball_centres(const Observations& o);
 
