@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <list>
 #include <map>
 #include <set>
 
@@ -551,7 +550,7 @@ bool explain_alone(Alone& one, std::uint64_t seed, FleetExplanation& all) {
 /// The parts that the machine made in one campaign, explained on their own.
 std::vector<Alone> parts_of_one(const reading::ReadCampaign& read, std::uint64_t seed,
                                 FleetExplanation& all) {
-  reading::ReadCampaign own = read;
+  reading::ReadCampaign& own = all.made.emplace_back(read);
   for (Observations& o : own.observations)
     if (!of_parts(o)) o = {};
   const Campaign& campaign = own.manifest->campaign;
@@ -569,7 +568,7 @@ std::vector<Alone> parts_of_one(const reading::ReadCampaign& read, std::uint64_t
 /// Explains the parts of each campaign on their own where one model leaves more of all of them than
 /// one model for each: the machine, the fixture or the measuring machine has changed between them.
 void part_what_differs(FleetExplanation& all, const Joined& joined, std::uint64_t seed) {
-  constexpr double differ_below = 0.001;
+  constexpr double differ_below = 0.001;  // docs/dev/constants.md, M72
   for (const auto& [id, campaigns] : joined) {
     const auto is = [&](const Alone& one) { return one.campaign == id; };
     const auto whole = std::find_if(all.alone.begin(), all.alone.end(), is);
@@ -609,9 +608,8 @@ Expected<FleetExplanation> explain_together(
   });
   Expected<void> trouble;
   FleetExplanation out;
-  std::list<reading::ReadCampaign> made;
   Joined joined;
-  ordered = join_parts(std::move(ordered), made, joined);
+  ordered = join_parts(std::move(ordered), out.made, joined);
   auto parts = common_parts(ordered, trouble, out);
   if (!trouble) return fail(trouble.error());
   if (parts.empty() && out.alone.empty())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <list>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,8 @@ struct Alone {
 };
 
 struct FleetExplanation {
+  /// Copies of campaigns that are explained in part or joined; terms refer to their effects.
+  std::list<reading::ReadCampaign> made{};
   std::vector<Together> together;
   std::vector<Alone> alone;
   std::vector<std::string> differing{};  ///< campaigns whose parts do not fit one model: "a, b"
