@@ -176,7 +176,7 @@ std::string ModelWords::cancelling(const std::string& one, const std::string& ot
 std::string ModelWords::plan(const model::Plan& plan) const {
   std::string text = finding_text(templates_, language_, plan_finding(plan), "says");
   if (text.empty()) return plan.id;
-  return plan.separates()
+  return plan.separates() || !(plan.power > 0.0)
              ? text
              : text + " " +
                    says("plan.too-little", {{"enough", model::enough_power, Quantity::number}}, {});

@@ -165,10 +165,12 @@ class Describing {
       if (f.axis != s.axis || f.unit != s.unit || f.ended || f.quantity == s.quantity) continue;
       const auto limit = limit_of(m_, f);
       if (!limit || limit->quantity != s.quantity) continue;
-      out.forecast = forecast(f, q, limit);
-      if (!out.forecast) continue;
-      out.forecast->value = std::fabs(out.forecast->value) + si(limit->beyond.value, q);
-      out.forecast->u = std::hypot(out.forecast->u, si(limit->beyond.u, q));
+      auto one = forecast(f, q, limit);
+      // Of several lines of the axis, the one that may leave its limit first.
+      if (!one || (out.forecast && one->p_out <= out.forecast->p_out)) continue;
+      one->value = std::fabs(one->value) + si(limit->beyond.value, q);
+      one->u = std::hypot(one->u, si(limit->beyond.u, q));
+      out.forecast = std::move(one);
     }
     if (const auto limit = limit_of(m_, s); !out.forecast && limit) {
       out.forecast = forecast(*s.course, q, limit);
@@ -401,9 +403,15 @@ std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const Show
 /// The date is kept only if each quantity of the axis with a limit keeps its limit.
 static void decide_date(std::vector<HistorySeries>& all) {
   std::set<std::string> kept_not;
-  for (const HistorySeries& s : all)
-    if (s.limit && !s.ended && !(s.forecast && s.forecast->answer == "keep"))
-      kept_not.insert(axis_of(s.axis, s.quantity));
+  for (const HistorySeries& s : all) {
+    if (!s.limit || s.ended || (s.forecast && s.forecast->answer == "keep")) continue;
+    // The values of a followed quantity are shown once more, without the forecast.
+    const bool followed = std::any_of(all.begin(), all.end(), [&](const HistorySeries& other) {
+      return other.axis == s.axis && other.quantity == s.quantity && other.unit == s.unit &&
+             other.limit && other.forecast && !other.ended;
+    });
+    if (s.forecast || !followed) kept_not.insert(axis_of(s.axis, s.quantity));
+  }
   for (HistorySeries& s : all)
     if (s.forecast && s.forecast->answer == "keep") {
       if (!s.limit)

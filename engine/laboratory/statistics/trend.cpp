@@ -237,7 +237,8 @@ class Trending {
                             with_drift->b(static_cast<Index>(k) + 1) * slope < 0.0);
     if (!against) return;
     const Shape line = shape_;
-    shape_.drifts = shape_.free = false;
+    shape_.free = false, shape_.drifts = s_.spread > 0.0;
+    if (shape_.drifts && !fit(shape_)) shape_.drifts = false;
     std::erase_if(shape_.changes, [](const Change& c) { return !c.declared; });
     const double enough = with_drift->chi2 + inseparable;
     auto best = fit(shape_);

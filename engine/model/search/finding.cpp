@@ -404,13 +404,16 @@ class Finder {
     }
   }
 
+  /// `start` if the best explanation has no effect besides the model.
   State without_weakest() const {
-    State out;
+    State out = f_.start;
+    bool any = false;
     for (const std::size_t b : f_.best.blocks) {
       const std::size_t e = f_.bench->effect_of(b);
       if (e < f_.in_model) continue;
       State rest = f_.bench->settled(f_.bench->without(f_.best, e));
-      if (out.blocks.empty() || rest.squares < out.squares) out = std::move(rest);
+      if (!any || rest.squares < out.squares) out = std::move(rest);
+      any = true;
     }
     return out;
   }

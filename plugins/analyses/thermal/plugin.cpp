@@ -272,22 +272,27 @@ class Worker {
                           .scale = 1.0 / metre});
   }
 
-  /// A sensor that was touched states nothing about the machine at rest.
-  bool jumps(const Followed& f) {
-    const std::vector<math::Jump> found = math::jumps_of(f.run);
-    for (const math::Jump& jump : found)
+  /// A sensor that was touched states nothing about the machine at rest, nor does a tilt of it.
+  bool touched(const Followed& f) {
+    if (f.tilt) {
+      const std::string sensor = f.name == "A" ? "Y" : "X";
+      return jumping_.contains(sensor + "1") || jumping_.contains(sensor + "2");
+    }
+    for (const math::Jump& jump : math::jumps_of(f.run)) {
+      jumping_.insert(f.name);
       out_.findings.push_back({.id = "thermal.jump",
                                .attention = true,
                                .evidence = {{"jump", jump.size, quantity_of(f)},
                                             minutes("from_min", f.run.time[jump.before]),
                                             minutes("to_min", f.run.time[jump.before + 1])},
                                .texts = {{"sensor", f.name}}});
-    return !found.empty();
+    }
+    return jumping_.contains(f.name);
   }
 
   void one(const Followed& f) {
     if (f.run.size() < 2) return;
-    if (tracks_.test == Test::etve && jumps(f)) return;
+    if (tracks_.test == Test::etve && touched(f)) return;
     put_ranges(f);
     if (tracks_.test != Test::spindle) return;
     put_end(f, "end", f.run);
@@ -521,7 +526,7 @@ class Worker {
   const Measurement& m_;
   const Wish& wish_;
   Worked out_;
-  std::set<std::string> said_;
+  std::set<std::string> said_, jumping_;
   double slowest_ = -1.0, slowest_u_ = 0.0;
   std::string slowest_name_;
   bool open_ = false;

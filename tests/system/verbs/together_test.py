@@ -272,7 +272,7 @@ class Together(unittest.TestCase):
             self.assertEqual([c["campaign"] for c in each[part]["campaigns"]], [f"c{n:04d}" for n in range(first, first + 4)])
             self.assertEqual(effect["per_campaign"], "shared")
         alone = " ".join(explain(self.site / "c0000", self.site / "c0004").stdout.split())
-        self.assertIn("runs also of machines of the same stated maker and model): c0000 X, c0004 X.", alone)
+        self.assertIn("runs also across machines of the same stated maker and model): c0000 X, c0004 X.", alone)
         self.replace(manifests, 'asset = ', 'model = "VM 1"\nasset = ')
         together = self.answer()
         self.assertEqual((together["part"], together["machines"]), ("X", ["M-1", "M-2"]))

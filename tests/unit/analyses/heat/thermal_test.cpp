@@ -113,6 +113,19 @@ TEST(Thermal, ASensorThatWasTouchedProposesNoDrift) {
   EXPECT_EQ(evidence(*proposal, "drift"), value(e, "window_X")->value);
 }
 
+TEST(Thermal, ATiltOfATouchedSensorHasNoRange) {
+  Made t = at_rest({"X1", "X2"}, 145, 300.0, [](std::size_t sensor, double time) {
+    const double slow = 1e-6 * std::sin(2.0 * std::numbers::pi * time / 43200.0);
+    return slow + (sensor == 1 && time > 20000.0 ? 9e-6 : 0.0);
+  });
+  t.campaign.measurements[0].foot = 0.1;
+  const auto e = evaluated(thermal(), t);
+  EXPECT_EQ(value(e, "range_B"), nullptr);
+  std::size_t jumps = 0;
+  for (const Finding& f : e.findings) jumps += f.id == "thermal.jump" ? 1U : 0U;
+  EXPECT_EQ(jumps, 1U);
+}
+
 TEST(Thermal, APauseIsNoJump) {
   Made t = at_rest({"X"}, 145, 120.0, [](std::size_t, double time) {
     return 0.6e-9 * (time > 7200.0 ? time + 4000.0 : time);  // 2.2 um/h

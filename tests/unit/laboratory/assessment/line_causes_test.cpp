@@ -161,6 +161,17 @@ TEST(Forecasts, AreOfTheQuantityThatHasTheLimit) {
   EXPECT_EQ(mean.forecast->answer, "expected") << "it has no limit of its own";
 }
 
+TEST(Forecasts, AFollowedQuantityWithItsOwnLimitKeepsTheDate) {
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", flat(-3.0, -3.0), 0.05);
+  m.judge("X", "B_mean", flat(3.0, 3.0));  // limit 8
+  std::vector<assessment::AssessedMachine> one{m.assessed()};
+  judge_all(one);
+  const auto d = assessment::describe(one[0], "out", "2024-03-01", "12 months");
+  ASSERT_TRUE(series_of(d, "B_mean").forecast);
+  EXPECT_EQ(series_of(d, "B_mean").forecast->answer, "keep");
+}
+
 TEST(Forecasts, NothingKeepsTheDateOfAnAxisThatIsOut) {
   MadeMachine m("S-42");
   m.follow("X", "B_mean", flat(-3.0, -3.0), 0.05);
