@@ -9,6 +9,7 @@
 
 #include "campaign/config/machines.h"
 #include "campaign/modelling/held_terms.h"
+#include "campaign/modelling/joined_parts.h"
 #include "campaign/modelling/model_json.h"
 #include "campaign/modelling/priors_json.h"
 #include "nonio/math/distributions.h"
@@ -20,9 +21,6 @@ namespace {
 
 using model::Holds;
 using storage::Json;
-
-// Limits the memory for the columns of all effects.
-constexpr std::size_t most_readings = 20000;
 
 const char* name_of(Holds holds) {
   switch (holds) {
@@ -108,63 +106,6 @@ class Kinds {
   std::map<std::string, std::string> kinds_;
   std::string unnamed_;
 };
-
-bool of_parts(const Observations& o) {
-  return std::any_of(o.lines.begin(), o.lines.end(), [](const auto& l) { return !l.body.empty(); });
-}
-
-/// One campaign with the parts that a machine made, of all its campaigns: each has a placement and a
-/// temperature of its own, so they are explained like several parts of one campaign.
-reading::ReadCampaign with_all_parts(const std::vector<const reading::ReadCampaign*>& campaigns) {
-  reading::ReadCampaign out = *campaigns.back();
-  Campaign& to = out.manifest->campaign;
-  to.measurements.clear(), out.observations.clear();
-  for (const reading::ReadCampaign* read : campaigns) {
-    const Campaign& from = read->manifest->campaign;
-    for (std::size_t m = 0; m < read->observations.size(); ++m) {
-      if (!of_parts(read->observations[m])) continue;
-      to.measurements.push_back(from.measurements[m]);
-      // What follows a space is a state of the machine.
-      to.measurements.back().id = from.id + "/" + from.measurements[m].id;
-      Observations& o = out.observations.emplace_back(read->observations[m]);
-      o.measurement = to.measurements.back().id;
-      for (auto& line : o.lines)
-        line.name = from.id + "/" + line.name, line.body = from.id + "/" + line.body;
-    }
-  }
-  to.id =
-      campaigns.front()->manifest->campaign.id + (campaigns.size() > 2 ? " ... " : ", ") + to.id;
-  return out;
-}
-
-/// The campaigns whose parts were joined, by the id of the joint campaign.
-using Joined = std::map<std::string, std::vector<const reading::ReadCampaign*>>;
-
-/// Replaces the parts that one machine made in several campaigns by one campaign with all of them.
-/// `made` owns the campaigns that are changed.
-std::vector<const reading::ReadCampaign*> join_parts(
-    std::vector<const reading::ReadCampaign*> campaigns, std::list<reading::ReadCampaign>& made,
-    Joined& joined) {
-  std::map<std::string, std::vector<const reading::ReadCampaign*>> by_machine;
-  for (const reading::ReadCampaign* read : campaigns)
-    if (const std::string machine = config::machine_input(read->manifest->campaign.machine);
-        !machine.empty() &&
-        std::any_of(read->observations.begin(), read->observations.end(), of_parts))
-      by_machine[machine].push_back(read);
-  for (const auto& [machine, list] : by_machine) {
-    if (list.size() < 2) continue;
-    for (const reading::ReadCampaign*& read : campaigns) {
-      if (std::find(list.begin(), list.end(), read) == list.end()) continue;
-      reading::ReadCampaign& rest = made.emplace_back(*read);
-      for (Observations& o : rest.observations)
-        if (of_parts(o)) o = {};
-      read = &rest;
-    }
-    campaigns.push_back(&made.emplace_back(with_all_parts(list)));
-    joined[campaigns.back()->manifest->campaign.id] = list;
-  }
-  return campaigns;
-}
 
 using Axes = std::map<Key, std::vector<Measured>>;
 
@@ -537,20 +478,10 @@ void keep_explanation(Alone& one, model::Explanation explained) {
   fit.part.clear();
 }
 
-bool explain_alone(Alone& one, std::uint64_t seed, FleetExplanation& all) {
-  auto explained = explain_part(one.part, seed);
-  if (explained)
-    keep_explanation(one, std::move(*explained));
-  else
-    all.left_out.push_back(one.campaign + " " + one.part.part.name + " (" +
-                           explained.error().message + ")");
-  return explained.has_value();
-}
-
 /// The parts that the machine made in one campaign, explained on their own.
 std::vector<Alone> parts_of_one(const reading::ReadCampaign& read, std::uint64_t seed,
-                                FleetExplanation& all) {
-  reading::ReadCampaign& own = all.made.emplace_back(read);
+                                std::list<reading::ReadCampaign>& made) {
+  reading::ReadCampaign& own = made.emplace_back(read);
   for (Observations& o : own.observations)
     if (!of_parts(o)) o = {};
   const Campaign& campaign = own.manifest->campaign;
@@ -560,7 +491,10 @@ std::vector<Alone> parts_of_one(const reading::ReadCampaign& read, std::uint64_t
     Alone one{campaign.id, std::move((*parts)[p])};
     for (const Measurement& m : campaign.measurements)
       if (m.order == "as-listed") one.ordered.push_back(m.id);
-    if (one.part.unfit.empty() && explain_alone(one, seed, all)) out.push_back(std::move(one));
+    auto explained = explain_part(one.part, seed);
+    if (!explained) continue;
+    keep_explanation(one, std::move(*explained));
+    out.push_back(std::move(one));
   }
   return out;
 }
@@ -576,13 +510,15 @@ void part_what_differs(FleetExplanation& all, const Joined& joined, std::uint64_
     std::vector<Alone> each;
     double squares = 0.0, n = 0.0;
     for (const reading::ReadCampaign* read : campaigns)
-      for (Alone& one : parts_of_one(*read, seed, all)) {
+      for (Alone& one : parts_of_one(*read, seed, all.made)) {
         const auto of = static_cast<double>(one.residual.size());
         squares += of * one.noise * one.noise, n += of;
         each.push_back(std::move(one));
       }
     const double ratio = whole->noise * whole->noise * n / squares;
-    if (!(squares > 0.0) || math::f_upper(ratio, n, n) > differ_below) continue;
+    if (!(squares > 0.0) || n < static_cast<double>(whole->residual.size()) ||
+        math::f_upper(ratio, n, n) > differ_below)
+      continue;
     all.differing.push_back(id);
     std::erase_if(all.alone, is);
     std::move(each.begin(), each.end(), std::back_inserter(all.alone));
@@ -651,7 +587,15 @@ Expected<FleetExplanation> explain_together(
     }
     out.together.push_back(std::move(t));
   }
-  std::erase_if(out.alone, [&](Alone& one) { return !explain_alone(one, seed, out); });
+  std::erase_if(out.alone, [&](Alone& one) {
+    auto explained = explain_part(one.part, seed);
+    if (explained)
+      keep_explanation(one, std::move(*explained));
+    else
+      out.left_out.push_back(one.campaign + " " + one.part.part.name + " (" +
+                             explained.error().message + ")");
+    return !explained;
+  });
   part_what_differs(out, joined, seed);
   return out;
 }
