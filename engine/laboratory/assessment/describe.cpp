@@ -174,7 +174,10 @@ class Describing {
     }
     if (const auto limit = limit_of(m_, s); !out.forecast && limit) {
       out.forecast = forecast(*s.course, q, limit);
-      if (out.forecast) out.forecast->u = std::hypot(out.forecast->u, si(limit->beyond.u, q));
+      if (out.forecast) {
+        out.forecast->u = std::hypot(out.forecast->u, si(limit->beyond.u, q));
+        out.forecast->of_largest = true;
+      }
     }
     return out;
   }
@@ -400,25 +403,20 @@ std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const Show
                        kernel::Beyond{0.0, s.course->series.points.back().u}};
 }
 
-/// The date is kept only if each quantity of the axis with a limit keeps its limit.
+/// The date is not kept if another quantity of the axis may leave its limit.
 static void decide_date(std::vector<HistorySeries>& all) {
-  std::set<std::string> kept_not;
-  for (const HistorySeries& s : all) {
-    if (!s.limit || s.ended || (s.forecast && s.forecast->answer == "keep")) continue;
-    // The values of a followed quantity are shown once more, without the forecast.
-    const bool followed = std::any_of(all.begin(), all.end(), [&](const HistorySeries& other) {
-      return other.axis == s.axis && other.quantity == s.quantity && other.unit == s.unit &&
-             other.limit && other.forecast && !other.ended;
-    });
-    if (s.forecast || !followed) kept_not.insert(axis_of(s.axis, s.quantity));
+  std::set<std::string> may_leave;
+  for (const HistorySeries& s : all)
+    if (s.limit && !s.ended && s.forecast && s.forecast->answer != "keep" &&
+        s.forecast->answer != "cannot-say")
+      may_leave.insert(axis_of(s.axis, s.quantity));
+  for (HistorySeries& s : all) {
+    if (!s.forecast || s.forecast->answer != "keep") continue;
+    if (!s.limit)
+      s.forecast->answer = "expected";
+    else if (may_leave.contains(axis_of(s.axis, s.quantity)))
+      s.forecast->answer = "other-decides";
   }
-  for (HistorySeries& s : all)
-    if (s.forecast && s.forecast->answer == "keep") {
-      if (!s.limit)
-        s.forecast->answer = "expected";
-      else if (kept_not.contains(axis_of(s.axis, s.quantity)))
-        s.forecast->answer = "other-decides";
-    }
 }
 
 bool is_at(const reports::TableLoaded& t, const std::string& axis,

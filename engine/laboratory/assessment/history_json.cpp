@@ -72,7 +72,7 @@ class HistoryWriter {
         json_.null();
     } else if (s.limit) {
       number("limit", *s.limit);
-      if (s.forecast) {
+      if (s.forecast && !s.forecast->of_largest) {
         json_.key("forecast");
         put(*s.forecast, s.limit);
       }
@@ -163,7 +163,9 @@ class HistoryWriter {
     else
       json_.null();
     put_text_or_null(json_, "leaves", says ? f.leaves : "");
-    json_.member("answer", f.answer);
+    json_.member("answer", f.answer == "expected"        ? "keep"
+                           : f.answer == "other-decides" ? "watch"
+                                                         : f.answer);
     json_.end_object();
   }
 

@@ -58,8 +58,10 @@ struct HistoryForecast {
   /// years.
   std::string leaves{};
   /// keep, watch, watch-now, act, overdue, cannot-say, expected (no limit), or other-decides: within
-  /// the limit, but not all quantities of the axis with a limit have the answer keep.
+  /// the limit, but another quantity of the axis may leave its own.
   std::string answer;
+  /// Whether largest deviations themselves are extrapolated, which JSON does not contain.
+  bool of_largest = false;
 };
 
 struct HistorySeries {
