@@ -503,6 +503,15 @@ void do_run(const RunOptions& options, const RunEvents& events, const std::strin
   run.error = closed.error().message + "; the same command goes on where it stopped";
 }
 
+/// Ends the processes of a run. Its memory goes with this process, because freeing all texts of the
+/// templates one by one takes as long as reading them.
+void leave(std::unique_ptr<SetUp> place) {
+  static auto* const left = new std::vector<std::unique_ptr<SetUp>>();
+  place->host.reset();
+  place->signer.reset();
+  left->push_back(std::move(place));
+}
+
 }  // namespace
 
 RunResult run_site(const RunOptions& options, const RunEvents& events) {
@@ -514,7 +523,7 @@ RunResult run_site(const RunOptions& options, const RunEvents& events) {
   };
   const auto site_text = look_at_site(options);
   if (!site_text) return refuse(site_text.error().message);
-  const auto place = set_up(options);
+  auto place = set_up(options);
   if (!place) return refuse(place.error().message);
   const reading::Context& context = (*place)->context;
   run.notes = (*place)->notes;
@@ -551,6 +560,7 @@ RunResult run_site(const RunOptions& options, const RunEvents& events) {
     if (lock) [[maybe_unused]]
       const auto tidied = tidy_all(run, options.out, true);
   }
+  leave(std::move(*place));
   return run;
 }
 

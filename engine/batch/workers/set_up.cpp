@@ -124,7 +124,8 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
     note_key(*place, !context.site.signing->time_stamp.empty());
   }
   auto templates = config::read_templates(options.template_folders, context.templates_sha256,
-                                          &context.templates_json, files->templates);
+                                          context.site.signing ? &context.templates_json : nullptr,
+                                          files->templates);
   if (!templates) return fail(all_of({templates.error()}));
   context.templates = std::move(*templates);
   for (const Error& warning : config::warnings_of_causes(context.templates))

@@ -20,16 +20,16 @@ using Texts = std::vector<std::pair<std::string, std::string>>;
 }  // namespace
 
 void gather_words(Templates& templates) {
-  std::erase_if(templates.tables,
-                [](const auto& table) { return table.first.starts_with(gathered_folder); });
   std::map<std::string, Settings, std::less<>> gathered;
-  for (const auto& [name, table] : templates.tables) {
+  for (auto& [name, table] : templates.tables) {
     const std::size_t end = name.find('/', words_folder.size());
     if (!name.starts_with(words_folder) || end == std::string::npos) continue;
     const std::string language = name.substr(words_folder.size(), end - words_folder.size());
     Settings& all = gathered[std::string(gathered_folder) + language];
-    for (const auto& [key, text] : table.values)
-      if (is_gathered(key)) all.values.try_emplace(key, text);
+    for (auto it = table.values.begin(); it != table.values.end();) {
+      const auto value = it++;
+      if (is_gathered(value->first)) all.values.insert(table.values.extract(value));
+    }
   }
   templates.tables.merge(gathered);
 }

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace nonio::hidden {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 using Values = std::vector<double>;
 
 double dot(const Values& a, const Values& b) {

@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace nonio::hidden {
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// Even, or each moved by up to 30 % of the distance, as ISO 230-2 wants against periodic errors.
 std::vector<double> targets_of(const Scenario& s, Random random) {

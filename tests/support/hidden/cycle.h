@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "hidden/generator.h"
 #include "hidden/random.h"
 
 namespace nonio::hidden {
+
+inline constexpr double pi = std::numbers::pi;
 
 /// What the axis does: for each reading, in order. True time, also where the file will have none.
 struct Cycle {

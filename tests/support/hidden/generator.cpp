@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <tuple>
 
@@ -12,8 +11,6 @@
 
 namespace nonio::hidden {
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 Campaign campaign_of(const Scenario& s, const Truth& truth) {
   Campaign campaign;

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "catalogue.h"
 
 namespace nonio::hidden {
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 const std::vector<Source>& sources(bool rotary) {
   static const std::vector<Source> linear = {

@@ -3,14 +3,12 @@
 // proportions, the size comes with `amplitude`.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "cycle.h"
 
 namespace nonio::hidden {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 using Values = std::vector<double>;
 
 template <class F>

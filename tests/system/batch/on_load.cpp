@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does harm before anything in it is called: what, says NONIO_TEST_HOW.
+// Does harm before anything in it is called: what, says its folder, on_load_WHAT.
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/syscall.h>
@@ -27,8 +28,18 @@ bool is_tried() {
   return false;
 }
 
+int harm();
+
+std::string_view what() {
+  Dl_info here{};
+  if (::dladdr(reinterpret_cast<const void*>(&harm), &here) == 0) std::abort();
+  const std::string_view path = here.dli_fname, before = "/on_load_";
+  const std::size_t begin = path.find(before) + before.size();
+  return path.substr(begin, path.find('/', begin) - begin);
+}
+
 int harm() {
-  constexpr std::string_view how = NONIO_TEST_HOW;
+  const std::string_view how = what();
   if (how == "quits") std::exit(0);
   if (how == "hangs")
     for (;;) ::pause();
@@ -58,7 +69,7 @@ const int done = harm();
 
 NONIO_PLUGIN(registry) {
   (void)done;
-  if (std::string_view(NONIO_TEST_HOW) != "prepares-twice") return;
+  if (what() != "prepares-twice") return;
   nonio::Output output;
   output.info = {"second-thoughts", "1", "has no memory the first time", {}};
   output.applies = [](const nonio::Campaign&) { return false; };

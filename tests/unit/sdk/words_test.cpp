@@ -96,15 +96,5 @@ TEST(Words, GatheredTheySayTheSame) {
   expect_what_is_said(t);
 }
 
-TEST(Words, GatheredAgainTheyFollowTheFiles) {
-  Templates t = two_files();
-  gather_words(t);
-  t.tables["words/en/a"].values["finding.drift.title"] = std::string("changed");
-  t.tables.erase("words/it/a");
-  gather_words(t);
-  EXPECT_EQ(finding_text(t, "en", drift, "title"), "changed");
-  EXPECT_EQ(finding_text(t, "it", drift, "title"), "changed");
-}
-
 }  // namespace
 }  // namespace nonio
