@@ -120,7 +120,7 @@ bool is_common(std::size_t c) {
          signs.find(static_cast<char16_t>(c)) != std::u16string_view::npos;
 }
 
-pdf::EmbeddedFont embedded(const Font& font, const std::string& file, const Numbers& numbers,
+pdf::EmbeddedFont embedded(const Font& font, std::string_view file, const Numbers& numbers,
                            int level) {
   return {subset_name(file, font.name), file.size(), pdf::deflated(file, level),
           widths_array(font.advance, numbers), pdf::deflated(to_unicode(font, numbers), level)};
@@ -141,11 +141,14 @@ void compress(Font& font) {
   font.with_common = embedded(font, subset, common, once_level);
 }
 
-/// Compares size and table directory, which has checksums, because comparing all bytes is slow.
+std::string_view directory_of(std::string_view font) {
+  return font.substr(0, 12 + 16 * std::size_t{FontReader(font).u16(4)});
+}
+
+/// The bytes that the font refers to may be gone, so that only `file` is read.
 bool same_font(const Font& font, FontFile file) {
-  const std::size_t directory = 12 + 16 * std::size_t{FontReader(font.bytes).u16(4)};
-  return font.name == file.name && font.bytes.size() == file.bytes.size() &&
-         std::string_view(font.bytes).substr(0, directory) == file.bytes.substr(0, directory);
+  return font.name == file.name && font.bytes.data() == file.bytes.data() &&
+         font.bytes.size() == file.bytes.size() && font.directory == directory_of(file.bytes);
 }
 
 }  // namespace
@@ -205,6 +208,7 @@ Expected<Font> parse_font(FontFile file) {
     if (is_common(c)) font.common[font.glyphs[c]] = 1;
   font.name = file.name;
   font.bytes = file.bytes;
+  font.directory = directory_of(file.bytes);
   return font;
 }
 

@@ -100,7 +100,7 @@ TEST(Fonts, ARareCharacterTakesTheWholeFont) {
 TEST(Fonts, WhatIsNoFontIsRefused) {
   EXPECT_FALSE(parse_font({"", "x.ttf"}));
   EXPECT_FALSE(parse_font({"%PDF-1.7", "x.ttf"}));
-  const std::string whole = fonts()->regular.bytes;
+  const std::string whole(fonts()->regular.bytes);
   for (std::size_t size = 0; size < whole.size(); size += 97)
     if (parse_font({std::string_view(whole).substr(0, size), "x.ttf"})) {
       EXPECT_GT(size, whole.size() / 4) << "a font cut to " << size << " bytes was accepted";

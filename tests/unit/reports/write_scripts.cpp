@@ -43,13 +43,13 @@ std::vector<std::pair<std::string, Document>> pages() {
 }
 
 /// The first part that a glyph is composed of becomes an empty one.
-void lose_part(Font& font, char32_t c, std::uint16_t empty) {
-  const FontReader r(font.bytes);
+void lose_part(const Font& font, std::string& bytes, char32_t c, std::uint16_t empty) {
+  const FontReader r(bytes);
   const Outlines outlines(r, *r.table("head"), *r.table("loca"), *r.table("glyf"));
   const std::size_t at = outlines.begin(font.glyph(c)) + 12;
   if (outlines.components(font.glyph(c)).empty()) return;
-  font.bytes[at] = static_cast<char>(empty >> 8);
-  font.bytes[at + 1] = static_cast<char>(empty & 0xFF);
+  bytes[at] = static_cast<char>(empty >> 8);
+  bytes[at + 1] = static_cast<char>(empty & 0xFF);
 }
 
 /// Once in the smallest letters of the page.
@@ -85,7 +85,10 @@ int main(int argc, char** argv) {
     all[name] = std::move(document);
   }
   Fonts broken = **fonts;
-  for (const char32_t c : U"校准证书") lose_part(broken.wide, c, broken.wide.glyph(U'\u3000'));
+  std::string bytes(broken.wide.bytes);
+  for (const char32_t c : U"校准证书")
+    lose_part(broken.wide, bytes, c, broken.wide.glyph(U'\u3000'));
+  broken.wide.bytes = bytes;
   return write("zh-lost-parts", all["zh"], broken) &&
                  write("el-lost-tonos", without(all["el"], "ύ", "υ"), **fonts) &&
                  write("ru-lost-accent", without(all["ru"], "а\u0301", "а"), **fonts)

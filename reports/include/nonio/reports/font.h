@@ -18,7 +18,9 @@ namespace nonio::reports {
 /// documents use.
 struct Font {
   std::string name;  ///< file name, for messages and the PDF
-  std::string bytes;
+  /// Those of the template, which must outlive the font: a Chinese font has 4 MB.
+  std::string_view bytes;
+  std::string directory;  ///< copy of the table directory, which has checksums
   std::vector<std::uint16_t> glyphs;   ///< by character; 0 if the font lacks the character
   std::vector<std::uint16_t> advance;  ///< by glyph, 1/1000 of the font size
   std::array<int, 4> box{};            ///< box and the next three members: 1/1000 of the font size
@@ -55,7 +57,7 @@ Expected<Font> parse_font(FontFile);
 /// Returns the font with all its glyphs, which rare characters need.
 const pdf::EmbeddedFont& with_all(const Font& font);
 
-/// Cached in the process. The result depends only on the bytes.
+/// Cached in the process for as long as the same templates are used.
 Expected<std::shared_ptr<const Fonts>> shared_fonts(FontFile regular, FontFile bold,
                                                     FontFile wide = {});
 
