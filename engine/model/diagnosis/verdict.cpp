@@ -96,9 +96,6 @@ class Judge {
     if (v.kind == Verdict::Kind::missing) {
       out_.explains_all = serious.empty() && !lacks_fit();
       lift(v.effect);
-      std::vector<Term> others = f_.of_best.fit.terms;
-      std::erase_if(others, [&](const Term& t) { return t.name() == v.effect; });
-      out_.plans = plans_for(f_.part, others, out_.candidates.front(), f_.terms, f_.of_best.fit.s);
     } else if (walks || !out_.together.empty() || !serious.empty() || !out_.cancelling.empty() ||
                lacks_fit()) {
       v.kind = Verdict::Kind::unknown;

@@ -122,6 +122,9 @@ class Packs(NightTest):
         """With certificates, drafts, histories in reports, several languages; in folders by digests."""
         shutil.rmtree(self.site)
         shutil.copytree(SAMPLES, self.site)
+        if not os.environ.get("NONIO_LONG"):
+            for campaign in sorted(p.parent for p in self.site.glob("*/campaign.toml"))[1::2]:
+                shutil.rmtree(campaign)
         with open(self.site / "site.toml", "a", encoding="utf-8") as file:
             file.write('\n[results]\nfolders = "hashed"\n')
         self.night(3, "--date", "2026-11-01")

@@ -114,7 +114,7 @@ class Cross(gantry_test.Gantry):
 
     def test_squareness_in_the_table_or_as_shift_of_the_slaves_zero(self):
         print("seed", SEED, flush=True)
-        for k in range(4):
+        for k in range(2):
             for driven in "XY":
                 machine = Machine(random.Random(SEED + k))
                 for choice in ("table", "slave-zero"):
@@ -148,7 +148,7 @@ class Cross(gantry_test.Gantry):
 
     def test_a_cross_table_that_was_active_is_removed_from_the_curves(self):
         """A worn gantry, measured with the tables of its first campaign: the new ones are complete."""
-        for k in range(3):
+        for k in range(2):
             old, now = Machine(random.Random(SEED + k)), Machine(random.Random(SEED + 50 + k))
             _, files = self.measured(old, SEED + k)
             for n, t in files.items():
@@ -174,24 +174,23 @@ class Cross(gantry_test.Gantry):
 
     def test_pitch_tables_first_and_their_reference_within_the_travel(self):
         """Pitch tables hold the beam as it is at their reference point, not as it is at the first target."""
-        for k in range(2):
-            for driven in "XY":
-                with self.subTest(k=k, driven=driven, seed=SEED):
-                    now, number = Machine(random.Random(SEED + k)), self.numbers(driven)
-                    other = "XY".replace(driven, "")
-                    extra = "".join('[options.siemens-840d.axes.%s]\nnumber = %d\nreference_mm = %g\n' % one for one in (
-                        (driven, number["U"], LENGTH["U"] * 0.4), (driven + "2", number["U2"], LENGTH["U"] * 0.4), (other, number["V"], 0.0)))
-                    _, files = self.measured(now, SEED + k, driven, extra)
-                    pitch = {n: t for n, t in files.items() if "EEC" in n}
-                    for n, t in pitch.items():
-                        (self.folder / n).write_text(t)
-                    active = {a: ",".join(n for n in pitch if "-%s-" % a in n) for a in ("X", "Y", driven + "2")}
-                    before = Loaded(now, pitch, number)
-                    results, new = self.measured(before, SEED + 90 + k, driven, extra, {a: n for a, n in active.items() if n})
-                    self.assertEqual(results["errors"], [])
-                    after = Loaded(now, pitch | new, number)
-                    for falling in (False, True):
-                        self.assertLess(diagonal(after, falling), 0.1 * diagonal(before, falling) + 2.5)
+        for driven in "XY":
+            with self.subTest(driven=driven, seed=SEED):
+                now, number = Machine(random.Random(SEED)), self.numbers(driven)
+                other = "XY".replace(driven, "")
+                extra = "".join('[options.siemens-840d.axes.%s]\nnumber = %d\nreference_mm = %g\n' % one for one in (
+                    (driven, number["U"], LENGTH["U"] * 0.4), (driven + "2", number["U2"], LENGTH["U"] * 0.4), (other, number["V"], 0.0)))
+                _, files = self.measured(now, SEED, driven, extra)
+                pitch = {n: t for n, t in files.items() if "EEC" in n}
+                for n, t in pitch.items():
+                    (self.folder / n).write_text(t)
+                active = {a: ",".join(n for n in pitch if "-%s-" % a in n) for a in ("X", "Y", driven + "2")}
+                before = Loaded(now, pitch, number)
+                results, new = self.measured(before, SEED + 90, driven, extra, {a: n for a, n in active.items() if n})
+                self.assertEqual(results["errors"], [])
+                after = Loaded(now, pitch | new, number)
+                for falling in (False, True):
+                    self.assertLess(diagonal(after, falling), 0.1 * diagonal(before, falling) + 2.5)
 
     # nonio table insert --axis XY: a backup whose tables were active
 
@@ -227,7 +226,7 @@ class Cross(gantry_test.Gantry):
         return Loaded(now, whole, self.numbers(driven)), whole
 
     def test_insert_of_several_axes_over_tables_that_were_active(self):
-        for control, k in (("siemens-840d", 0), ("siemens-840d", 1), ("siemens-840d", 2), ("heidenhain-tnc", 3)):
+        for control, k in (("siemens-840d", 0), ("heidenhain-tnc", 3)):
             self.control = control
             for driven in "XY":
                 with self.subTest(control=control, k=k, driven=driven, seed=SEED):

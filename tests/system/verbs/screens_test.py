@@ -97,9 +97,8 @@ class Screens(VerbTest):
             see("run", site, "--out", out, "--dry-run")
             see("status", out)
             see("check", site)
-            for results in sorted(p.parent for p in out.glob("*/results.json")):
-                see("show", results, "--all")
-                see("show", results)
+            for i, results in enumerate(sorted(p.parent for p in out.glob("*/results.json"))):
+                see("show", results, *["--all"] * (i % 4 > 0))
             see("show", site / "15-step-diagonal", "--all")
             for campaign in ("17-straight-or-square", "18-one-column", "42-heat", "48-warm-axis", "50-turned-plates"):
                 see("model", "explain", site / campaign, "--all")

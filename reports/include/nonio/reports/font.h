@@ -20,7 +20,7 @@ struct Font {
   std::string name;  ///< file name, for messages and the PDF
   /// Those of the template, which must outlive the font: a Chinese font has 4 MB.
   std::string_view bytes;
-  std::string directory;  ///< copy of the table directory, which has checksums
+  std::string directory;               ///< copy of the table directory, which has checksums
   std::vector<std::uint16_t> glyphs;   ///< by character; 0 if the font lacks the character
   std::vector<std::uint16_t> advance;  ///< by glyph, 1/1000 of the font size
   std::array<int, 4> box{};            ///< box and the next three members: 1/1000 of the font size
