@@ -24,6 +24,7 @@ NONIO = os.environ["NONIO"]
 SOURCE = pathlib.Path(os.environ["NONIO_DOCS"]).parent
 SAMPLE = SOURCE / "samples" / "certificates"
 REASON = "seen, and right"
+LONG = bool(os.environ.get("NONIO_LONG"))
 CONTROL = ["siemens-840d", "heidenhain-tnc", "fanuc", "linuxcnc", "rotary-vectors-heidenhain", "rotary-vectors-linuxcnc"]
 
 
@@ -234,16 +235,18 @@ class Stopped(unittest.TestCase):
     def tables(self, campaign):
         return sorted(f.name for f in (self.out / campaign).iterdir() if f.name.startswith(tuple(CONTROL)))
 
-    def release(self, campaign, reasons):
+    def release(self, campaign, reasons, *more):
+        given = [*(f"{r}={REASON}" for r in sorted(reasons)), *more]
         done = subprocess.run([NONIO, "certificate", "approve", str(self.site / campaign), "--by", "B. Sample"] +
-                              [part for r in sorted(reasons) for part in ("--reason", f"{r}={REASON}")],
+                              [part for reason in given for part in ("--reason", reason)],
                               capture_output=True, text=True, timeout=300)
         return done.returncode, done.stdout + done.stderr
 
-    def waiting(self, campaign):
-        done = subprocess.run([NONIO, "certificate", "approve", str(self.site / campaign), "--list", "--json"], capture_output=True,
+    def waiting(self):
+        """Findings that a person must answer, of each draft."""
+        done = subprocess.run([NONIO, "certificate", "approve", str(self.site), "--list", "--json"], capture_output=True,
                               text=True, timeout=300)
-        return {f["id"] for d in json.loads(done.stdout)["drafts"] for f in d["findings"] if f["severity"] == "attention"}
+        return {d["campaign"]: {f["id"] for f in d["findings"] if f["severity"] == "attention"} for d in json.loads(done.stdout)["drafts"]}
 
     def numbers(self):
         done = subprocess.run([NONIO, "certificate", "list", str(self.site), "--json"], capture_output=True, text=True, timeout=300)
@@ -278,26 +281,27 @@ class Stopped(unittest.TestCase):
 
     def test_no_number_before_a_person_says_why(self):
         never = {"day-to-come", "calibrated-later", "unknown-axis", "readings-all-equal"}  # see below
-        for finding in self.cases:
+        waiting, before, drafts = self.waiting(), self.numbers(), []
+        for k, finding in enumerate(self.cases):
             with self.subTest(finding=finding):
                 name = f"{finding}-accepted"  # accepting the tables does not accept the certificate
-                attention = self.waiting(name)
-                doubt = "plausibility." + finding
+                attention, doubt = waiting.get(name, set()), "plausibility." + finding
                 if attention:
                     self.assertIn(doubt, attention)
                 status, said = self.release(name, attention - {doubt})
                 self.assertNotEqual(status, 0, said)
-                self.assertNotIn(name, self.numbers())
                 if not (self.out / name / "certificate-draft.pdf").exists():
                     self.assertIn(finding, never)
                     self.assertIn("certificate.", json.dumps(self.results(name)))
                     continue
+                drafts.append((name, attention))
                 self.assertIn(doubt, said)
-                for nothing in ("", " ", "-", "?"):
-                    status, _ = subprocess.getstatusoutput(
-                        f"'{NONIO}' release '{self.site / name}' --by 'B. Sample' --reason '{doubt}={nothing}'")
-                    self.assertNotEqual(status, 0)
-                self.assertNotIn(name, self.numbers())
+                nothing = ("", " ", "-", "?")
+                for reason in nothing if LONG else [nothing[k % len(nothing)]]:
+                    self.assertNotEqual(self.release(name, attention - {doubt}, f"{doubt}={reason}")[0], 0)
+        self.assertEqual(self.numbers(), before)
+        for name, attention in drafts if LONG else drafts[::6]:
+            with self.subTest(name):
                 status, said = self.release(name, attention)
                 self.assertEqual(status, 0, said)
                 self.assertIn(name, self.numbers())
