@@ -28,7 +28,7 @@ struct OpenCampaign {
 /// `read.errors`.
 tl::expected<OpenCampaign, int> open_campaign(
     const std::string& folder, const Common& common,
-    reading::TemplatesFor what = reading::TemplatesFor::documents);
+    reading::TemplatesFor what = reading::TemplatesFor::terminal_with_library);
 
 /// Compares each part with its model. The error of a part without a comparison is printed and added
 /// to `errors`.

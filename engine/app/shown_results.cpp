@@ -17,8 +17,9 @@ using storage::Json;
 namespace fs = std::filesystem;
 
 Expected<Shown> evaluated_now(const fs::path& folder, const Common& common, Documents documents) {
-  NONIO_TRY(auto place, reading::open_workplace(folder, common.plugin_folders(),
-                                                common.template_folders(), NONIO_VERSION));
+  NONIO_TRY(auto place,
+            reading::open_workplace(folder, common.plugin_folders(), common.template_folders(),
+                                    NONIO_VERSION, reading::TemplatesFor::own_documents));
   if (!common.quiet)
     for (const std::string& note : place->notes) complain(note);
   const reading::Context& context = place->context;

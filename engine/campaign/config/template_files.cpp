@@ -54,6 +54,14 @@ fs::path path_of(const TemplateFiles& own, const std::string& name) {
              : own.folder / name;
 }
 
+bool in_other_language(const std::string& name, const std::vector<std::string>& languages) {
+  constexpr std::string_view words = "words/";
+  return !languages.empty() && name.starts_with(words) &&
+         std::none_of(languages.begin(), languages.end(), [&](const std::string& language) {
+           return name.compare(words.size(), language.size() + 1, language + "/") == 0;
+         });
+}
+
 std::string line_of(const std::string& name, const std::string& digest) {
   return name + " " + digest + "\n";
 }
@@ -73,7 +81,8 @@ Expected<void> keep(Templates& templates, const std::string& name, std::string b
 
 Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::string& digest,
                                    std::string* json, const TemplateFiles& own,
-                                   const std::vector<std::string>& below) {
+                                   const std::vector<std::string>& below,
+                                   const std::vector<std::string>& languages) {
   std::map<std::string, fs::path> files;
   for (const fs::path& folder : folders) {
     NONIO_TRY(auto here, template_paths(folder));
@@ -100,6 +109,7 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
       carried[name] = !travels(name)            ? storage::Json{{"sha256", sum}}
                       : name.ends_with(".toml") ? storage::Json{{"text", bytes}}
                                                 : storage::Json{{"hex", to_hex(bytes)}};
+    if (in_other_language(name, languages) && path == folders.front() / name) continue;
     if (auto kept = keep(templates, name, std::move(bytes), path.string()); !kept)
       return fail(kept.error());
   }

@@ -23,11 +23,13 @@ Expected<std::map<std::string, std::filesystem::path>> template_paths(
 
 /// Later folders replace files of earlier ones, and `own` replaces all. `digest` receives a digest
 /// of all files, `json` the text that `templates_from` reads. If `below` is not empty, only files
-/// whose names begin with one of its texts are read.
+/// whose names begin with one of its texts are read. If `languages` is not empty, words of other
+/// languages in the first folder only count for `digest`.
 Expected<Templates> read_templates(const std::vector<std::filesystem::path>& folders,
                                    std::string& digest, std::string* json = nullptr,
                                    const TemplateFiles& own = {},
-                                   const std::vector<std::string>& below = {});
+                                   const std::vector<std::string>& below = {},
+                                   const std::vector<std::string>& languages = {});
 
 /// Returns `below` of `read_templates` for sentences in `language`, without fonts and pages.
 std::vector<std::string> words_in(const std::string& language);
