@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does harm before anything in it is called: what, says its folder, on_load_WHAT.
+// Does harm before anything in it is called: what, says its name, test_on_load_WHAT.so.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -33,9 +33,9 @@ int harm();
 std::string_view what() {
   Dl_info here{};
   if (::dladdr(reinterpret_cast<const void*>(&harm), &here) == 0) std::abort();
-  const std::string_view path = here.dli_fname, before = "/on_load_";
-  const std::size_t begin = path.find(before) + before.size();
-  return path.substr(begin, path.find('/', begin) - begin);
+  const std::string_view path = here.dli_fname, before = "test_on_load_";
+  const std::size_t begin = path.rfind(before) + before.size();
+  return path.substr(begin, path.rfind('.') - begin);
 }
 
 int harm() {
