@@ -238,12 +238,10 @@ class Explain {
 
   /// Plans what separates an effect that is missing and was not added.
   void plan_missing() {
-    if (std::none_of(all_.begin(), all_.end(), [](const modelling::Explained& e) {
+    if (std::erase_if(all_, [](const modelling::Explained& e) {
           return e.explanation.verdict.kind == model::Verdict::Kind::missing;
-        }))
-      return;
-    all_.clear();
-    explain();
+        }) > 0)
+      explain();
   }
 
   void warn_of_run() {
