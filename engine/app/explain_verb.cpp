@@ -204,44 +204,31 @@ class Explain {
     auto fleet = config::read_fleet(config::site_of(options_.folder), open_.place->context.site);
     if (!fleet) return complain(text_of(fleet.error().front()));
     fleet_ = std::move(*fleet);
-    if (const int status = explain(!options_.automatic); status != exit_done && all_.empty()) {
+    if (const int status = explain(); status != exit_done && all_.empty()) {
       if (common_.json && status == exit_failed) show();
       return status;
     }
-    if (options_.automatic) {
-      const bool added = add_missing();
-      plan_missing();
-      failed_ = failed_ || !added;
-    }
+    if (options_.automatic) add_missing();
     if (!steps_.empty()) warn_of_run();
     show();
     return failed_ ? exit_failed : exit_done;
   }
 
  private:
-  /// Makes no plans, because each missing effect is added. False if one could not be added.
-  bool add_missing() {
+  void add_missing() {
     for (auto effects = modelling::next_effects(all_); !effects.empty();
          effects = modelling::next_effects(all_)) {
       for (const std::string& effect : effects) {
         if (steps_.size() == most_steps * all_.size()) {
           tell(std::to_string(steps_.size()) +
                " effects were added and one is still missing; stopped");
-          return false;
+          failed_ = true;
+          return;
         }
-        if (!add(effect)) return false;
+        if (!add(effect)) return;
       }
-      explain(false);
-    }
-    return true;
-  }
-
-  /// Plans what separates an effect that is missing and was not added.
-  void plan_missing() {
-    if (std::erase_if(all_, [](const modelling::Explained& e) {
-          return e.explanation.verdict.kind == model::Verdict::Kind::missing;
-        }) > 0)
       explain();
+    }
   }
 
   void warn_of_run() {
@@ -256,7 +243,7 @@ class Explain {
 
   static void tell(const std::string& text) { complain(text); }
 
-  int explain(bool with_plans = true) {
+  int explain() {
     const std::vector<modelling::Explained> before = std::exchange(all_, {});
     errors_ = open_.read.errors;
     failed_ = !errors_.empty();
@@ -277,8 +264,7 @@ class Explain {
       const auto known = std::find_if(before.begin(), before.end(), [&](const auto& one) {
         return one.part.part.name == part.part.name && one.part.names() == part.names();
       });
-      auto explanation = known == before.end() ? modelling::explain_part(part, options_.seed,
-                                                                         nullptr, true, with_plans)
+      auto explanation = known == before.end() ? modelling::explain_part(part, options_.seed)
                                                : Expected<model::Explanation>(known->explanation);
       if (explanation) {
         all_.push_back({std::move(part), std::move(*explanation)});
@@ -296,6 +282,7 @@ class Explain {
                                                 known_ ? &*known_ : nullptr);
     if (!change) {
       tell(text_of(change.error()));
+      failed_ = true;
       return false;
     }
     steps_.push_back(change->step);

@@ -442,12 +442,11 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
 }  // namespace
 
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
-                                          const model::Groundwork* known, bool with_library,
-                                          bool with_plans) {
+                                          const model::Groundwork* known, bool with_library) {
   if (!part.unfit.empty()) return fail(part.unfit);
   return process::guarded(kind_of(part.part) + " " + part.part.name, [&] {
-    auto out = model::explain(part.part, part.terms, without_held(part.catalogue, part), seed,
-                              known, with_plans);
+    auto out =
+        model::explain(part.part, part.terms, without_held(part.catalogue, part), seed, known);
     if (out && with_library) look_up_library(part, seed, known, *out);
     if (out) leave_out_weaker_groups(*out);
     if (out) append_held(part, out->comparison.fit);

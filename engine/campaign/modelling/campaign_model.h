@@ -102,9 +102,9 @@ Expected<model::Comparison> compare_part(const PartModel& part,
 /// `keeps` receives the owner of the effects.
 std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const void>& keeps);
 /// Searches for effects that explain the residuals. `with_library` adds a search of causes.
-/// `known`, `with_plans`: see model/explain.h.
+/// `known`: see model/explain.h.
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
                                           const model::Groundwork* known = nullptr,
-                                          bool with_library = true, bool with_plans = true);
+                                          bool with_library = true);
 
 }  // namespace nonio::modelling

@@ -300,7 +300,7 @@ void plan_for_replaceable(const Finding& f, Explanation& out) {
 
 Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& model,
                                   const std::vector<Term>& catalogue, std::uint64_t seed,
-                                  const Ground& ground, bool with_plans) {
+                                  const Ground& ground) {
   NONIO_TRY(auto finding, find_best(part, model, catalogue, seed));
   Explanation out;
   out.candidates = candidates_of(finding, ground);
@@ -310,7 +310,7 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
   out.best_rms = finding.of_best.fit.rms;
   const double rms = rms_with(finding.part.table, finding.of_model.fit.terms, ground.weight);
   judge(finding, std::isfinite(rms) ? rms : finding.of_model.fit.rms, out);
-  if (out.verdict.kind == Verdict::Kind::missing && with_plans) plan_for_missing(finding, out);
+  if (out.verdict.kind == Verdict::Kind::missing) plan_for_missing(finding, out);
   if (out.verdict.kind == Verdict::Kind::nothing) {
     out.replaceable = replaceable_in(finding, ground);
     plan_for_replaceable(finding, out);
@@ -373,14 +373,14 @@ std::vector<Term> replacing(const Part& part, const Explanation& e, std::vector<
 
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed,
-                              const Groundwork* known, bool with_plans) {
+                              const Groundwork* known) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to explain");
   if (part.kind == Part::Kind::course) return explain_course(part, model, catalogue, seed);
   std::optional<Groundwork> made;
   if (known == nullptr) known = &made.emplace(part, model);
   const Groundwork::Found& ground = known->found();
   auto out = explain_all(ground.thin ? *ground.thin : part, model, catalogue, seed,
-                         ground.thin ? *ground.of_thin : ground.whole, with_plans);
+                         ground.thin ? *ground.of_thin : ground.whole);
   if (!out) return out;
   // Compare the model as `compare` does, so that one model has one RMS.
   NONIO_TRY(auto comparison, compare(part, model, known));

@@ -205,11 +205,10 @@ struct Explanation {
 /// repeats cannot replace one that is the same in all of them, nor the reverse.
 std::vector<Term> replacing(const Part& part, const Explanation& e, std::vector<Term> terms);
 
-/// `seed`: for the simulated noise that determines the false-alarm rate; `known`: as in `compare`;
-/// `with_plans`: whether to plan what separates a missing effect from its aliases.
+/// `seed`: for the simulated noise that determines the false-alarm rate; `known`: as in `compare`.
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed = 1,
-                              const Groundwork* known = nullptr, bool with_plans = true);
+                              const Groundwork* known = nullptr);
 
 /// Predicts the effect of one more run of an axis, for each order of directions. Empty for other
 /// parts, without uncertainties, for more than 20,000 readings, and if more readings change the
