@@ -88,6 +88,7 @@ class Describing {
       : m_(m), today_(today) {
     if (const auto day = day_number(due)) {
       ahead_ = day;
+      stated_date_ = true;
     } else if (const auto interval = usual_interval(m.stored.campaigns)) {
       ahead_ = day_number(m.stored.campaigns.back().day);
       if (ahead_) *ahead_ += *interval;
@@ -247,8 +248,12 @@ class Describing {
     if (f.answer == kernel::Answer::watch && !out.leaves.empty() && out.leaves <= today_)
       out.answer = "watch-now";
     const bool open = is_open_now(s.axis, s.quantity);
-    if (!open && out.date < today_ && f.answer != kernel::Answer::cannot_say)
-      out.answer = "overdue";
+    if (!open && out.date < today_ && f.answer != kernel::Answer::cannot_say) {
+      if (stated_date_)
+        out.answer = "overdue";
+      else if (f.answer == kernel::Answer::watch)
+        out.answer = "watch-now";
+    }
     if (!open) return out;
     // A value that is out of tolerance or indeterminate requires action regardless of the forecast.
     if (f.answer == kernel::Answer::cannot_say)
@@ -264,6 +269,7 @@ class Describing {
   /// Index of the result of an analysis by campaign, measurement, quantity and unit.
   std::map<std::tuple<std::size_t, std::string, std::string, std::string>, std::size_t> stated_;
   std::optional<std::int64_t> ahead_{};
+  bool stated_date_ = false;  ///< whether `[[due]]` states that day
 };
 
 }  // namespace
@@ -403,8 +409,9 @@ std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const Show
                        kernel::Beyond{0.0, s.course->series.points.back().u}};
 }
 
-/// The date is not kept if another quantity of the axis may leave its limit.
-static void decide_date(std::vector<HistorySeries>& all) {
+/// The date is not kept if another quantity of the axis may leave its limit, or if it is before
+/// `day`. A date that is not stated obliges nobody then: the worklist has no line for it.
+static void decide_date(std::vector<HistorySeries>& all, const std::string& day) {
   std::set<std::string> may_leave;
   for (const HistorySeries& s : all)
     if (s.limit && !s.ended && s.forecast && s.forecast->answer != "keep" &&
@@ -416,6 +423,8 @@ static void decide_date(std::vector<HistorySeries>& all) {
       s.forecast->answer = "expected";
     else if (may_leave.contains(axis_of(s.axis, s.quantity)))
       s.forecast->answer = "other-decides";
+    else if (s.forecast->date < day)
+      s.forecast->answer = "passed";
   }
 }
 
@@ -460,7 +469,7 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
   const Describing describing(machine, out, due, today);
   for (const FollowedSeries& s : machine.followed) m.series.push_back(describing.of(s));
   for (const ShownSeries& s : machine.shown) m.series.push_back(describing.of(s));
-  decide_date(m.series);
+  decide_date(m.series, today);
   m.tables_loaded = tables_loaded(machine), m.tables_unstated = tables_unstated(machine);
   for (const reports::TableLoaded& t : m.tables_loaded)
     for (HistorySeries& s : m.series)

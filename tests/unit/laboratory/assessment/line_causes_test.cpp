@@ -201,6 +201,25 @@ TEST(Forecasts, AskForAMeasurementNowWhereTheLimitMayBeExceededNow) {
   EXPECT_EQ(forecast(early.leaves).answer, "watch-now");
 }
 
+// The worklist has no line for a usual interval that has passed, so the page asks for nothing.
+TEST(Forecasts, OnlyAStatedDateObliges) {
+  MadeMachine steady("S-46"), drifting("S-47");
+  for (MadeMachine* m : {&steady, &drifting}) {
+    const bool drifts = m == &drifting;
+    m->follow("X", "B_mean", drifts ? std::vector{-2.0, -3.4, -5.1, -6.4} : flat(-2.0, -2.0), 0.3);
+    m->judge("X", "B", drifts ? std::vector{2.1, 3.5, 5.2, 6.5} : flat(2.1, 2.1));
+  }
+  std::vector<assessment::AssessedMachine> both{steady.assessed(), drifting.assessed()};
+  judge_all(both);
+  const auto answer = [&](std::size_t machine, const std::string& due) {
+    return series_of(assessment::describe(both[machine], "out", due, "", "2040-01-01"), "B")
+        .forecast->answer;
+  };
+  EXPECT_EQ(answer(0, ""), "passed");
+  EXPECT_EQ(answer(1, ""), "watch-now");
+  EXPECT_EQ(answer(0, "2024-03-01"), "overdue");
+}
+
 TEST(Forecasts, NothingKeepsTheDateOfAnAxisThatIsOpenOrOverdue) {
   MadeMachine m("S-42");
   m.follow("X", "scale", flat(1.0, 1.0), 0.05);

@@ -57,8 +57,9 @@ struct HistoryForecast {
   /// Day on which the 95 % bound reaches the limit; empty without a limit, or if not within 20
   /// years.
   std::string leaves{};
-  /// keep, watch, watch-now, act, overdue, cannot-say, expected (no limit), or other-decides: within
-  /// the limit, but another quantity of the axis may leave its own.
+  /// keep, watch, watch-now, act, overdue, passed (as overdue, but no date is stated), cannot-say,
+  /// expected (no limit), or other-decides: within the limit, but another quantity of the axis may
+  /// leave its own.
   std::string answer;
   /// Whether largest deviations themselves are extrapolated, which JSON does not contain.
   bool of_largest = false;
