@@ -216,17 +216,70 @@ class Explain {
 
  private:
   void add_missing() {
-    for (auto effects = modelling::next_effects(all_); !effects.empty();
-         effects = modelling::next_effects(all_)) {
-      for (const std::string& effect : effects) {
-        if (steps_.size() == most_steps * all_.size()) {
+    std::set<std::string> settled;
+    for (;;) {
+      const modelling::NextEffects next = modelling::next_effects(all_, settled);
+      if (next.of == nullptr) return drop_unproven();
+      const std::string part = next.of->part.part.name;
+      const bool is_course = next.of->part.part.kind == model::Part::Kind::course;
+      const auto left_out = next.of->explanation.comparison.cv_rms;
+      const double rms = next.of->explanation.comparison.fit.rms;
+      const std::size_t before = steps_.size();
+      for (const std::string& effect : next.effects) {
+        if (steps_.size() >= most_steps * all_.size()) {
           tell(std::to_string(steps_.size()) +
                " effects were added and one is still missing; stopped");
           failed_ = true;
           return;
         }
-        if (!add(effect)) return;
+        if (!change(effect, true)) return;
       }
+      if (is_course) {
+        const std::size_t kept = best_step(before, left_out, rms);
+        for (std::size_t s = next.effects.size() + before; s > kept; --s)
+          if (!change(next.effects[s - 1 - before], false)) return;
+        if (kept == before) settled.insert(part);
+      }
+      explain();
+    }
+  }
+
+  /// Number of steps after which left-out blocks are predicted best: readings over time are
+  /// correlated, and what describes them can predict others worse, or leave more.
+  std::size_t best_step(std::size_t from, std::optional<double> left_out, double rms) const {
+    std::size_t best = from;
+    for (std::size_t s = from; s < steps_.size(); ++s) {
+      const modelling::ModelStep& step = steps_[s];
+      if (!step.cv_after || !step.rms_after || (left_out && *step.cv_after >= *left_out) ||
+          *step.rms_after >= rms)
+        continue;
+      best = s + 1;
+      left_out = step.cv_after;
+    }
+    return best;
+  }
+
+  /// Removes effects that others added after them have made insignificant, unless the verdict
+  /// becomes another one.
+  void drop_unproven() {
+    std::set<std::string> needed;
+    for (;;) {
+      const auto weak = modelling::unproven_effects(all_);
+      const auto effect = std::find_if(weak.begin(), weak.end(), [&](const std::string& name) {
+        return !needed.contains(name) &&
+               std::any_of(steps_.begin(), steps_.end(),
+                           [&](const auto& step) { return step.added && step.effect == name; });
+      });
+      if (effect == weak.end()) return;
+      const auto before = modelling::verdicts_of(all_);
+      if (!change(*effect, false)) return;
+      explain();
+      const auto after = modelling::verdicts_of(all_);
+      needed.insert(*effect);
+      if (std::equal(before.begin(), before.end(), after.begin(), after.end(),
+                     [](const auto& a, const auto& b) { return a.kind == b.kind; }))
+        continue;
+      if (!change(*effect, true)) return;
       explain();
     }
   }
@@ -277,8 +330,8 @@ class Explain {
     return all_.empty() ? exit_failed : exit_done;
   }
 
-  bool add(const std::string& effect) {
-    const auto change = modelling::change_model(open_.folder, open_.read, effect, true,
+  bool change(const std::string& effect, bool add) {
+    const auto change = modelling::change_model(open_.folder, open_.read, effect, add,
                                                 known_ ? &*known_ : nullptr);
     if (!change) {
       tell(text_of(change.error()));

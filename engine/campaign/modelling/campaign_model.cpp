@@ -382,12 +382,17 @@ void leave_out_weaker_groups(model::Explanation& e) {
   });
 }
 
-/// Whether a cause may have the same appearance as the named effect: its shape was searched, or a
-/// quantity was recorded that no effect of the catalog depends on.
-bool may_imitate(const PartModel& part, const model::Candidate& named) {
+/// Whether an effect of the best set may be one of the causes in another form: its shape was
+/// searched, or a quantity was recorded that no effect of the catalog depends on.
+bool may_be_imitated(const PartModel& part, const model::Explanation& e) {
   const Observations& o = part.part.table;
-  return !named.term.effect->shapes.empty() || !o.air.empty() || !o.pressure.empty() ||
-         !o.humidity.empty();
+  return !o.air.empty() || !o.pressure.empty() || !o.humidity.empty() ||
+         std::any_of(e.candidates.begin(), e.candidates.end(), [&](const model::Candidate& c) {
+           return !c.term.effect->shapes.empty() &&
+                  (&c == &e.candidates.front() ||
+                   std::find(e.together.begin(), e.together.end(), c.term.name()) !=
+                       e.together.end());
+         });
 }
 
 /// Whether runs or passes have zeros that scatter more than the readings within them.
@@ -419,7 +424,7 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
   if (!out.comparison.floor || part.library == nullptr) return;
   const bool explained = out.verdict.kind == Kind::missing,
              is_open = out.verdict.kind == Kind::unknown || has_large_zeros(out.comparison);
-  if (explained ? !may_imitate(part, out.candidates.front()) : !is_open) return;
+  if (explained ? !may_be_imitated(part, out) : !is_open) return;
   std::shared_ptr<const void> keeps;
   std::vector<model::Term> library = library_of(part, keeps);
   if (explained && out.explains_all) library = model::replacing(part.part, out, std::move(library));

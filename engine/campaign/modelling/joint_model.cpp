@@ -180,15 +180,23 @@ std::vector<model::Member> members_of(const Together& t) {
   return members;
 }
 
-/// Adds causes that one campaign shows, because otherwise another effect would be named in their
-/// place. Returns false without such a cause.
-bool add_named_causes(Together& t, std::uint64_t seed) {
+/// Adds causes that one of `asked` campaigns, evenly chosen, shows, because otherwise other effects
+/// would be named in their place. Returns false without such a cause.
+bool add_named_causes(Together& t, std::size_t asked, std::uint64_t seed) {
   std::set<std::string> named;
+  const std::size_t step = (t.parts.size() + asked - 1) / asked;
+  for (std::size_t m = 0; m < t.parts.size(); m += step) {
+    const auto alone = explain_part(t.parts[m], seed);
+    if (!alone || alone->verdict.kind != model::Verdict::Kind::missing) continue;
+    for (const model::Candidate& c : alone->candidates)
+      if (c.term.library && (c.term.name() == alone->verdict.effect ||
+                             std::find(alone->together.begin(), alone->together.end(),
+                                       c.term.name()) != alone->together.end()))
+        named.insert(c.term.of_all());
+  }
   for (const PartModel& part : t.parts)
-    if (const auto alone = explain_part(part, seed);
-        alone && alone->verdict.kind == model::Verdict::Kind::missing &&
-        alone->candidates.front().term.library)
-      named.insert(alone->verdict.effect);
+    for (const model::Term& known : part.catalogue)
+      if (!known.library) named.erase(known.of_all());
   if (named.empty()) return false;
   for (PartModel& part : t.parts)
     for (model::Term& term : library_of(part, t.keeps.emplace_back()))
@@ -315,11 +323,13 @@ Expected<FleetExplanation> explain_together(
     }
     t.part = (one_kind ? "" : storage::listed(each_once(t.machines)) + " ") + key.axis +
              (key.side.empty() ? "" : " " + key.side);
+    constexpr std::size_t few = 8;
+    add_named_causes(t, few, seed);
     NONIO_TRY(t.explanation, model::explain_together(members_of(t), seed));
     const bool explained =
         t.explanation.verdict == model::Verdict::Kind::nothing ||
         (t.explanation.verdict == model::Verdict::Kind::missing && t.explanation.explains_all);
-    if (!explained && add_named_causes(t, seed)) {
+    if (!explained && t.parts.size() > few && add_named_causes(t, t.parts.size(), seed)) {
       NONIO_TRY(t.explanation, model::explain_together(members_of(t), seed));
     }
     out.together.push_back(std::move(t));

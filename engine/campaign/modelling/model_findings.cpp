@@ -307,6 +307,18 @@ std::optional<ModelFit::Curve> curve_of(const PartModel& part, const model::Fit&
   return out;
 }
 
+/// A single effect that would leave at most half of a course, but which chance may imitate.
+static void put_unproven(const model::Explanation& e, Quantity q, Finding& f) {
+  const model::Candidate* best = nullptr;
+  for (const model::Candidate& c : e.candidates)
+    if (is_ranked(c) && (best == nullptr || c.rms < best->rms)) best = &c;
+  if (best == nullptr || !(best->rms <= 0.5 * e.comparison.fit.rms)) return;
+  f.id = "verdict.unknown-or-chance";
+  f.texts[2].second = best->term.name();
+  f.evidence.push_back({"after", best->rms, q});
+  f.evidence.push_back({"p", best->p, Quantity::probability});
+}
+
 Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   const model::Verdict& v = e.verdict;
   const Quantity q = part.deviation();
@@ -345,6 +357,8 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
     f.id = "verdict.unknown-possible";
     f.texts.emplace_back("effects", storage::listed(e.together));
   }
+  if (v.kind == Kind::unknown && part.part.kind == model::Part::Kind::course)
+    put_unproven(e, q, f);
   if (v.below_scatter) f.id = "verdict.unknown-below-scatter";
   if (v.kind == Kind::unknown && !e.certain.empty()) {
     f.id = "verdict.certain";

@@ -86,6 +86,7 @@ storage::Json predict_json(const std::vector<Predicted>& all, const Campaign& se
       storage::put(part, "holds_until", *p.fails_from, Quantity::time);
     else if (one.unseen.part.kind == model::Part::Kind::course)
       part["holds_until_s"] = nullptr;
+    if (p.fails_until) storage::put(part, "holds_from", *p.fails_until, Quantity::time);
     part["outside_range"] = p.outside;
     std::string says = words.prediction(p, one.unseen);
     for (const std::string& said : words.recordings(one.unseen, {})) says += " " + said;

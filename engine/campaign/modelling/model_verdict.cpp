@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/modelling/model_verdict.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 namespace nonio::modelling {
 
@@ -73,14 +76,17 @@ std::string next_effect(const std::vector<PartVerdict>& parts) {
   return {};
 }
 
-std::vector<std::string> next_effects(const std::vector<Explained>& all) {
-  if (all.empty()) return {};
-  const Explained& worst = all[most_severe(all)];
+NextEffects next_effects(const std::vector<Explained>& all, const std::set<std::string>& settled) {
+  std::vector<PartVerdict> verdicts = verdicts_of(all);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (settled.contains(all[i].part.part.name))
+      verdicts[i] = {to_text(model::Verdict::Kind::nothing), {}, {}};
+  const std::string next = next_effect(verdicts);
+  if (next.empty()) return {};
+  const Explained& worst = all[most_severe_of(verdicts)];
   const model::Explanation& e = worst.explanation;
   const model::Part::Kind kind = worst.part.part.kind;
-  const std::string next = next_effect(verdicts_of(all));
-  if (next.empty()) return {};
-  std::vector<std::string> out{next};
+  NextEffects out{&worst, {next}};
   // Sensors replace each other in a displacement over time, so their set is added as a whole. The
   // set of a volume is added if it leaves nothing unexplained, otherwise its significant effects.
   std::vector<std::string> more;
@@ -90,8 +96,34 @@ std::vector<std::string> next_effects(const std::vector<Explained>& all) {
     more = e.certain;
   for (const std::string& effect : more) {
     std::string written = model::written_for(worst.part.part, effect);
-    if (written != next) out.push_back(std::move(written));
+    if (written != next) out.effects.push_back(std::move(written));
   }
+  return out;
+}
+
+std::vector<std::string> unproven_effects(const std::vector<Explained>& all) {
+  std::map<std::string, double> strength;  // |value| / u, infinite where a part proves the effect
+  for (const Explained& e : all) {
+    const model::Fit& fit = e.explanation.comparison.fit;
+    const std::vector<std::string> weak = model::below_uncertainty(fit);
+    for (const model::Term& term : fit.terms) {
+      if (term.effect->is_nuisance || term.held) continue;
+      double own = std::numeric_limits<double>::infinity();
+      if (std::find(weak.begin(), weak.end(), term.name()) != weak.end()) {
+        own = 0.0;
+        for (const model::Parameter& p : fit.parameters)
+          if (p.effect == term.name() && !p.shape) own = std::max(own, std::fabs(p.value) / p.u);
+      }
+      double& most = strength[model::written_for(e.part.part, term.name())];
+      most = std::max(most, own);
+    }
+  }
+  std::vector<std::pair<double, std::string>> weakest;
+  for (const auto& [effect, of] : strength)
+    if (std::isfinite(of)) weakest.emplace_back(of, effect);
+  std::sort(weakest.begin(), weakest.end());
+  std::vector<std::string> out;
+  for (auto& [of, effect] : weakest) out.push_back(std::move(effect));
   return out;
 }
 

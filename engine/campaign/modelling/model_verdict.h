@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,16 @@ struct PartVerdict {
 };
 std::vector<PartVerdict> verdicts_of(const std::vector<Explained>& all);
 std::string next_effect(const std::vector<PartVerdict>& parts);
-/// Returns the effects in the form of the manifest.
-std::vector<std::string> next_effects(const std::vector<Explained>& all);
+/// What is to be added next, in the form of the manifest, for the most severe part that is not one of
+/// `settled`; `of` is null if nothing is.
+struct NextEffects {
+  const Explained* of = nullptr;
+  std::vector<std::string> effects{};
+};
+NextEffects next_effects(const std::vector<Explained>& all, const std::set<std::string>& settled);
+/// Effects, in the form of the manifest, whose values are below their uncertainties in each part
+/// that has them, the weakest first.
+std::vector<std::string> unproven_effects(const std::vector<Explained>& all);
 
 const char* to_text(model::Verdict::Kind kind);
 

@@ -45,6 +45,9 @@ std::string ModelWords::prediction(const model::Prediction& p, const PartModel& 
       says(p.rms < p.sd ? "prediction" : "prediction.worse", numbers, {{"part", part.part.name}});
   if (p.fails_from)
     text += " " + says("prediction.fails", {{"from", *p.fails_from, Quantity::time}}, {});
+  if (p.fails_until)
+    text += " " + says("prediction.fails-until", {{"until", *p.fails_until, Quantity::time}}, {});
+  if (u > p.sd) text += " " + says("prediction.undetermined", {}, {});
   if (p.outside)
     text += " " + says(part.part.kind == model::Part::Kind::course ? "prediction.outside"
                                                                    : "prediction.outside-places",

@@ -64,9 +64,11 @@ const char* why_left(const model::ChannelLeft& left) {
     case Why::start_value:
       return "channel-left.start-value";
     case Why::start_values_dropped:
+      return "channel-left.start-values-dropped";
+    case Why::spikes_dropped:
       break;
   }
-  return "channel-left.start-values-dropped";
+  return "channel-left.spikes-dropped";
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ Comparison comparison_of_course(const Part& part, Fit fit) {
     if (std::fabs(fit.residual[i]) > std::fabs(out.largest))
       out.largest = fit.residual[i], out.largest_row = i;
   out.floor = floor_of(fit.residual);
-  out.cv_rms = left_out_rms(part, fit.terms);
+  out.cv_rms = left_out_rms(CourseData(part), fit.terms).front();
   out.places = places_of(part, fit.residual);
   for (const Place& place : out.places)
     if (place.p < place_p && out.seats.empty()) out.seats.push_back(place);

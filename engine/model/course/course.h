@@ -25,11 +25,10 @@ Expected<Comparison> compare_course(const Part& part, const std::vector<Term>& m
 Expected<Explanation> explain_course(const Part& part, const std::vector<Term>& model,
                                      const std::vector<Term>& catalogue, std::uint64_t seed);
 
-/// RMS of cross-validation, m: each block of time is predicted from the other blocks and has a zero
-/// of its own. The shapes of the terms are those of the fit.
-double left_out_rms(const Part& part, const std::vector<Term>& terms);
-/// ln of the same, averaged over the displacements that are fitted together.
-double ln_left_out_rms(const CourseData& data, const std::vector<Term>& terms);
+/// RMS of cross-validation, m, of this displacement and of those that are fitted together: each
+/// block of time is predicted from the other blocks and has a zero of its own. The shapes of the
+/// terms are those of the fit.
+std::vector<double> left_out_rms(const CourseData& data, const std::vector<Term>& terms);
 
 /// For each of these members of the best set and each of its aliases the shortest further test that
 /// separates them, or a plan without readings if none that is tried does; `best`: the fit of this set.

@@ -33,7 +33,8 @@ class CourseExplanation {
   Explanation made() {
     set_ = search_.found();
     const auto singles = search_.best_with({});
-    if (search_.p_of_search() < named_p) {
+    const double p_of_search = search_.p_of_search();
+    if (p_of_search < named_p) {
       set_ = proven(std::move(set_));
       begin_with_best_alone(singles);
       judge_members();
@@ -41,12 +42,15 @@ class CourseExplanation {
       set_.clear();
     }
     const double alone = search_.level_of({}), all = search_.level_of(set_);
-    const CourseChance further = search_.chance_with(set_);
+    const CourseChance first = search_.chance_with({});
+    const CourseChance further = set_.empty() ? first : search_.chance_with(set_);
     for (Member& member : members_) {
       const auto single = singles.find(search_.entry(member.entry).term);
       if (single != singles.end()) {
         member.alone = alone - single->second.second;
-        member.predicts = search_.left_out({}) - search_.left_out({single->second.first});
+        member.predicts = own_left_out({}) - own_left_out({single->second.first});
+        member.p_alone = first.p({member.alone, search_.left_out({}) -
+                                                    search_.left_out({single->second.first})});
       }
       add_member(member, all);
     }
@@ -59,7 +63,9 @@ class CourseExplanation {
           more == grown.end() ? 0.0
                               : search_.left_out(set_) -
                                     search_.left_out(CourseSearch::with(set_, more->second.first));
-      add(one.first, {alone - one.second, gain}, further.p({gain, improved}));
+      // What the search does not prove, no single effect of it does.
+      add(one.first, {alone - one.second, gain},
+          std::max(further.p({gain, improved}), set_.empty() ? p_of_search : 0.0));
     }
     std::stable_sort(out_.candidates.begin(), out_.candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
@@ -81,12 +87,17 @@ class CourseExplanation {
     double loss, p;
     double alone = 0.0;     ///< gain of ln evidence as the only addition to the model
     double predicts = 0.0;  ///< decrease of ln(RMS) of the cross-validation as the only addition
+    double p_alone = 1.0;   ///< p-value of these two gains
   };
 
-  /// Evidence can increase while blocks of time that are left out are predicted worse. Drops the
-  /// effects whose values are below their uncertainties, and those without which these blocks are
-  /// predicted at least as well, but not those of `kept`: if these are below their uncertainties,
-  /// others that replace them.
+  /// ln(RMS) of the cross-validation of this displacement: those that move together share a search,
+  /// but what is missing from each can be another effect.
+  double own_left_out(const CourseSet& set) const { return std::log(search_.left_out_with(set)); }
+
+  /// Evidence can increase while blocks of time that are left out are predicted worse, or while more
+  /// is left, which correlated noise then describes. Drops the effects whose values are below their
+  /// uncertainties, and those without which these blocks are predicted at least as well or less is
+  /// left, but not those of `kept`: if these are below their uncertainties, others that replace them.
   CourseSet proven(CourseSet set, const CourseSet& kept = {}) const {
     Whole now = whole(set);
     while (!set.empty()) {
@@ -101,44 +112,55 @@ class CourseExplanation {
         if (Whole one = whole(others); best.size() != others.size() || one.ln_rms < least.ln_rms)
           least = std::move(one), best = std::move(others);
       }
-      if (best.size() + 1 != set.size() || (now.weak.empty() && least.ln_rms > now.ln_rms)) break;
+      if (best.size() + 1 != set.size() ||
+          (now.weak.empty() && least.ln_rms > now.ln_rms && least.rms > now.rms))
+        break;
       now = std::move(least), set = std::move(best);
     }
     return set;
   }
 
-  /// Several sensors can together imitate the one that shows the cause, with less of its noise. The
-  /// effect that alone predicts left-out blocks best is preferred if it leaves only noise. It is
-  /// also preferred if it leaves less than half of what the best effect of the set alone leaves, and
-  /// comes closer (in ln RMS) to the whole set than to this, or is in a set that predicts as well.
+  /// Several sensors can together imitate the one that shows the cause, with less of its noise. An
+  /// effect that alone leaves only noise is preferred: the one with the largest evidence, or the one
+  /// that predicts left-out blocks best. The latter is also preferred if it leaves less than half of
+  /// what the best effect of the set alone leaves, and comes closer (in ln RMS) to the whole set than
+  /// to this, or is in a set that predicts as well.
   void begin_with_best_alone(const std::map<std::size_t, std::pair<std::size_t, double>>& singles) {
     constexpr double none = std::numeric_limits<double>::infinity();
-    double least = none, least_of_set = none;
-    std::size_t alone = 0;
+    double least = none, least_of_set = none, least_level = none;
+    std::size_t alone = 0, likeliest = 0;
     for (const auto& [term, one] : singles) {
-      const double ln_rms = search_.left_out({one.first});
+      const double ln_rms = own_left_out({one.first}), level = search_.own_level_of({one.first});
       if (ln_rms < least) least = ln_rms, alone = one.first;
+      if (level < least_level) least_level = level, likeliest = one.first;
       if (search_.has_term(set_, term)) least_of_set = std::min(least_of_set, ln_rms);
     }
-    if (set_.empty() || !(least < least_of_set)) return;
-    CourseSet other{alone};
-    if (const Whole one = whole(other); !one.only_noise) {
-      if (least > least_of_set - std::numbers::ln2) return;
-      const double of_set = whole(set_).ln_rms;
-      other = proven(search_.best(other), other);
-      if (2.0 * one.ln_rms > of_set + least_of_set &&
-          whole(other).ln_rms > of_set + std::log(same_course_rms))
-        return;
-    }
-    set_ = std::move(other);
-    first_ = search_.term_of(alone).name();
+    if (set_.empty()) return;
+    const Whole model = whole({});
+    for (const std::size_t e : {likeliest, alone})
+      if (const Whole one = whole({e});
+          one.only_noise && !model.only_noise && one.own_ln_rms < model.own_ln_rms)
+        return begin_with(e, {e});
+    if (!(least < least_of_set - std::numbers::ln2)) return;
+    const double of_set = whole(set_).own_ln_rms, of_one = whole({alone}).own_ln_rms;
+    const CourseSet other = proven(search_.best({alone}), {alone});
+    if (2.0 * of_one <= of_set + least_of_set ||
+        whole(other).own_ln_rms <= of_set + std::log(same_course_rms))
+      begin_with(alone, other);
+  }
+
+  void begin_with(std::size_t first, const CourseSet& set) {
+    set_ = set;
+    first_ = search_.term_of(first).name();
   }
 
   /// A set fitted with its shapes searched again, as in the model that users would get.
   struct Whole {
-    double ln_rms = std::numeric_limits<double>::infinity();  ///< of the cross-validation
+    /// Of the cross-validation: averaged over the displacements, and of this one.
+    double ln_rms = std::numeric_limits<double>::infinity(), own_ln_rms = ln_rms;
     std::vector<std::string> weak;  ///< effects of the set with values below their uncertainties
     bool only_noise = false;        ///< whether successive readings differ as much as all readings
+    double rms = std::numeric_limits<double>::infinity();  ///< m
   };
 
   Whole whole(const CourseSet& set) const {
@@ -150,8 +172,13 @@ class CourseExplanation {
     Whole out;
     const auto fit = fit_course(data_, terms);
     if (!fit) return out;
-    out.ln_rms = ln_left_out_rms(data_, fit->terms);
+    const std::vector<double> left_out = left_out_rms(data_, fit->terms);
+    out.ln_rms = 0.0;
+    for (const double rms : left_out)
+      out.ln_rms += std::log(rms) / static_cast<double>(left_out.size());
+    out.own_ln_rms = std::log(left_out.front());
     out.only_noise = leaves_only_noise(fit->rms, floor_of(fit->residual));
+    out.rms = fit->rms;
     const auto below = below_uncertainty(*fit);
     for (const std::size_t e : set)
       if (contains(below, search_.term_of(e).name())) out.weak.push_back(search_.term_of(e).name());
@@ -200,7 +227,6 @@ class CourseExplanation {
   void add(std::size_t e, const Gain& gain, double p) {
     Candidate c;
     c.term = search_.term_of(e);
-    c.cv_rms = search_.left_out_with({e});
     c.minimal_detectable = std::numeric_limits<double>::quiet_NaN();  // not determined for a course
     c.p = p;
     const bool member = std::find(set_.begin(), set_.end(), e) != set_.end();
@@ -211,14 +237,15 @@ class CourseExplanation {
     out_.candidates.push_back(std::move(c));
   }
 
-  /// If `anew`, the shapes of the model are searched again, and those of the candidate if it is a
-  /// member of the best set or nothing was found. A candidate whose fit fails is not visible.
+  /// If `anew`, the shapes of the model and of the candidate are searched again, as when the
+  /// candidate is added. A candidate whose fit fails is not visible.
   void fit(Candidate& c, bool anew) {
     std::vector<Term> terms = anew ? model_ : out_.comparison.fit.terms;
     terms.push_back(c.term);
-    if (anew && (set_.empty() || is_member(c))) terms.back().shape.clear();
+    if (anew) terms.back().shape.clear();
     if (const auto fit = fit_course(data_, terms)) {
       c.rms = fit->rms;
+      c.cv_rms = left_out_rms(data_, fit->terms).front();
       c.term.shape = fit->terms.back().shape;
       for (const Parameter& parameter : fit->parameters)
         if (parameter.effect == c.term.name()) c.parameters.push_back(parameter);
@@ -253,18 +280,33 @@ class CourseExplanation {
       }
       v.kind = Verdict::Kind::missing;
       v.effect = named();
-      plan();
       // The verdict and its numbers must be those of the first candidate.
       std::stable_partition(out_.candidates.begin(), out_.candidates.end(),
                             [&](const Candidate& c) { return c.term.name() == v.effect; });
-      for (const Candidate& c : out_.candidates)
-        out_.candidates.front().score = std::max(out_.candidates.front().score, c.score);
+      Candidate& front = out_.candidates.front();
+      for (const Candidate& c : out_.candidates) front.score = std::max(front.score, c.score);
+      // It is named as the first addition: within the set others may replace it.
+      for (const Member& m : members_)
+        if (search_.term_of(m.entry).name() == v.effect) front.p = std::min(front.p, m.p_alone);
+      name_aliases(front);
+      plan();
       return;
     }
     out_.sensors = sensors_of(data_.part(), out_.comparison.fit);
     v.kind = leaves_only_noise(out_.comparison.fit.rms, out_.comparison.floor)
                  ? Verdict::Kind::nothing
                  : Verdict::Kind::unknown;
+  }
+
+  /// The verdict offers the aliases of the named effect instead of it, so those remain that alone
+  /// leave nearly as little: others replace it only within the set.
+  void name_aliases(Candidate& named) const {
+    constexpr double nearly = 1.5;
+    std::erase_if(named.aliases, [&](const std::string& name) {
+      const auto alias = std::find_if(out_.candidates.begin(), out_.candidates.end(),
+                                      [&](const Candidate& c) { return c.term.name() == name; });
+      return alias != out_.candidates.end() && !(alias->rms <= nearly * named.rms);
+    });
   }
 
   /// For the effects that are named or significant, with the shapes with which aliases were found.

@@ -346,10 +346,7 @@ Expected<Fit> fit_course(const Part& part, const std::vector<Term>& terms) {
   return fit_course(CourseData(part), terms);
 }
 
-namespace {
-
-/// For each displacement, m.
-std::vector<double> left_out(const CourseData& data, const std::vector<Term>& terms) {
+std::vector<double> left_out_rms(const CourseData& data, const std::vector<Term>& terms) {
   CoursePool pool(data, noise_of_fit(data));
   std::vector<Index> places;
   for (const Term& term : terms) {
@@ -363,19 +360,6 @@ std::vector<double> left_out(const CourseData& data, const std::vector<Term>& te
   for (Index j = 0; j < data.displacements().cols(); ++j)
     out.push_back(pool.left_out(places, sides, j));
   return out;
-}
-
-}  // namespace
-
-double left_out_rms(const Part& part, const std::vector<Term>& terms) {
-  return left_out(CourseData(part), terms).front();
-}
-
-double ln_left_out_rms(const CourseData& data, const std::vector<Term>& terms) {
-  const std::vector<double> rms = left_out(data, terms);
-  double sum = 0.0;
-  for (const double one : rms) sum += std::log(one);
-  return sum / static_cast<double>(rms.size());
 }
 
 }  // namespace nonio::model

@@ -99,7 +99,7 @@ class CoursePlans {
     pool.finish();
     variance_ = pool.variance(columns, CourseSides(pool, data.displacements().leftCols(1)));
     // Another test is predicted no better than blocks of this one that are left out.
-    const double ratio = left_out_rms(data.part(), best.terms) / std::max(best.rms, 1e-300);
+    const double ratio = left_out_rms(data, best.terms).front() / std::max(best.rms, 1e-300);
     variance_ *= std::max(1.0, ratio * ratio);
   }
 
@@ -167,7 +167,7 @@ class CoursePlans {
     for (; !fit && terms.size() > 1; fit = fit_course(data, terms))
       terms.pop_back();  // two loads that always change together
     if (!fit) return Follows::unknown;
-    const double ratio = std::exp(ln_left_out_rms(data, fit->terms) - ln_left_out_rms(data, {}));
+    const double ratio = left_out_rms(data, fit->terms).front() / left_out_rms(data, {}).front();
     place->second = ratio < follows           ? Follows::yes
                     : ratio > does_not_follow ? Follows::no
                                               : Follows::unknown;

@@ -108,10 +108,18 @@ class CourseSearch {
     return !columns.empty() && columns.back() < 0;
   }
 
+  /// -ln of the evidence, averaged over displacements that are searched together.
   double level_of(const CourseSet& set) const {
     const auto columns = columns_of(set);
     if (has_twice(columns)) return std::numeric_limits<double>::infinity();
     return pool_->cost(columns, *sides_).mean();
+  }
+
+  /// -ln of the evidence of this displacement alone.
+  double own_level_of(const CourseSet& set) const {
+    const auto columns = columns_of(set);
+    if (has_twice(columns)) return std::numeric_limits<double>::infinity();
+    return pool_->cost(columns, *sides_)(0);
   }
 
   bool has_term(const CourseSet& set, std::size_t term) const {

@@ -103,28 +103,42 @@ std::vector<double> with_zeros(const Part& part, VectorXd& readings, MatrixXd& c
   return share;
 }
 
-/// Start of the first window (a twentieth, at least 10 readings) with an RMS error above 2 u. A zero
-/// that is the mean of all readings is wrong before and after a change, so that the model may seem
-/// to fail from the beginning: then that of the first window is used, with its u.
-std::optional<double> fails_from(const std::vector<double>& time, const Prediction& p,
-                                 bool zero_kept) {
-  const std::size_t n = time.size(), window = std::max<std::size_t>(10, n / 20);
-  const auto first_above = [&](double zero, double variances) -> std::optional<double> {
-    for (std::size_t from = 0; from + window <= n; from += window) {
-      double squares = 0.0;
-      for (std::size_t i = from; i < from + window; ++i)
-        squares += std::pow((p.error[i] - zero) / p.u[i], 2) / variances;
-      if (squares > 4.0 * static_cast<double>(window)) return time[from];
-    }
-    return std::nullopt;
+/// Finds where the errors exceed their uncertainty to the end, or from the beginning as those of a
+/// start do: windows (a twentieth, at least 10 readings) with an RMS above 2 u. Of all ways to
+/// divide the readings into a part where the model holds, with a zero of its own, and one where it
+/// does not, that is taken in which the errors of the one and the length of the other are least.
+void find_failure(const std::vector<double>& time, bool zero_kept, Prediction& p) {
+  const std::size_t n = time.size(), window = std::max<std::size_t>(10, n / 20), count = n / window;
+  constexpr double above = 4.0;  // (2 u)^2
+  if (count < 2) return;
+  // Sums of squares in units of u about any zero, up to each window.
+  struct Sums {
+    double w = 0.0, we = 0.0, wee = 0.0;
   };
-  const auto from = first_above(0.0, 1.0);
-  if (zero_kept || !from || *from > time.front()) return from;
-  const auto first = p.error.begin();
-  const double zero = std::accumulate(first, first + static_cast<std::ptrdiff_t>(window), 0.0) /
-                      static_cast<double>(window);
-  const auto later = first_above(zero, 2.0);
-  return later ? later : from;
+  std::vector<Sums> up_to(count + 1);
+  for (std::size_t k = 0; k < count; ++k) {
+    Sums s = up_to[k];
+    for (std::size_t i = k * window; i < (k + 1 == count ? n : (k + 1) * window); ++i) {
+      const double w = 1.0 / (p.u[i] * p.u[i]);
+      s.w += w, s.we += w * p.error[i], s.wee += w * p.error[i] * p.error[i];
+    }
+    up_to[k + 1] = s;
+  }
+  const auto holds = [&](std::size_t from, std::size_t to) {
+    const double w = up_to[to].w - up_to[from].w, we = up_to[to].we - up_to[from].we,
+                 wee = up_to[to].wee - up_to[from].wee;
+    return zero_kept || !(w > 0.0) ? wee : wee - we * we / w;
+  };
+  const double failing = above * static_cast<double>(window);  // a window where it does not hold
+  // At least two windows: in one of 20 the limit is exceeded by chance.
+  double least = holds(0, count) - failing;
+  for (std::size_t k = 0; k + 2 <= count; ++k)
+    if (const double cost = holds(0, k) + static_cast<double>(count - k) * failing; cost < least)
+      least = cost, p.fails_from = time[k * window];
+  if (p.fails_from) least -= failing;
+  for (std::size_t k = 2; k < count; ++k)
+    if (const double cost = holds(k, count) + static_cast<double>(k) * failing; cost < least)
+      least = cost, p.fails_until = time[k * window], p.fails_from.reset();
 }
 
 /// The part with each channel related to its largest value in `seen`, as the parameters are.
@@ -277,7 +291,7 @@ Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, c
     if (std::fabs(out->error[i]) <= 2.0 * out->u[i]) ++inside;
   }
   out->inside = static_cast<double>(inside) / static_cast<double>(out->u.size());
-  out->fails_from = fails_from(unseen.table.time, *out, zero_kept);
+  find_failure(unseen.table.time, zero_kept, *out);
   out->outside = leaves_range(seen, model, unseen);
   return out;
 }

@@ -19,6 +19,7 @@ using Channel = Observations::Channel;
 constexpr std::array start_values{85.0, no_thermometer, 0.0};  // degC
 constexpr double far_apart = 5.0;                              // K, from the values around
 constexpr double notable = 0.05;  // part of the readings or of the time
+constexpr double least_spike = 2.0, spike_in_changes = 20.0;  // K; median changes to the next reading
 constexpr std::size_t least_equal = 30, least_others = 2;
 constexpr double others_move = 0.5, others_in_digits = 20.0;  // K; steps of the last digit
 constexpr double ln_chance = -14.0;                           // of so many equal values
@@ -29,6 +30,43 @@ double range(const Channel& c, double from, double to) {
   for (auto i = static_cast<std::size_t>(begin); i < c.time.size() && c.time[i] <= to; ++i)
     low = std::min(low, c.value[i]), high = std::max(high, c.value[i]);
   return high > low ? high - low : 0.0;
+}
+
+void remove(Channel& c, const std::vector<char>& removed) {
+  std::size_t to = 0;
+  for (std::size_t i = 0; i < removed.size(); ++i)
+    if (removed[i] == 0) c.time[to] = c.time[i], c.value[to++] = c.value[i];
+  c.time.resize(to);
+  c.value.resize(to);
+}
+
+/// Removes single readings far from the course of those around them, which a body that has warmed
+/// cannot leave and reach again at once. If they are many, the channel may really change so fast.
+std::optional<ChannelLeft> without_spikes(Channel& c) {
+  const std::size_t n = c.value.size();
+  if (n < least_equal) return std::nullopt;
+  std::vector<double> changes;
+  for (std::size_t i = 1; i < n; ++i) changes.push_back(std::fabs(c.value[i] - c.value[i - 1]));
+  const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
+  std::nth_element(changes.begin(), middle, changes.end());
+  const double least = std::max(least_spike, spike_in_changes * *middle);
+  std::vector<char> spike(n, 0);
+  ChannelLeft left{c.name, ChannelLeft::Why::spikes_dropped};
+  double largest = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double before = c.value[i > 0 ? i - 1 : 1], after = c.value[i + 1 < n ? i + 1 : n - 2];
+    const double off = std::min(std::fabs(c.value[i] - before), std::fabs(c.value[i] - after));
+    const bool returns = (c.value[i] > before) == (c.value[i] > after) &&
+                         std::fabs(after - before) < 0.5 * off;
+    if (!returns || !(off > least)) continue;
+    spike[i] = 1;
+    ++left.readings;
+    if (off > largest) largest = off, left.value = c.value[i];
+  }
+  if (left.readings == 0 || static_cast<double>(left.readings) > notable * static_cast<double>(n))
+    return std::nullopt;
+  remove(c, spike);
+  return left;
 }
 
 /// Removes stretches of one of the start values that begin and end with a jump.
@@ -55,11 +93,7 @@ std::optional<ChannelLeft> without_start_values(Channel& c) {
   const bool fails =
       static_cast<double>(left.readings) > notable * static_cast<double>(start.size());
   if (!fails) left.why = ChannelLeft::Why::start_values_dropped;
-  std::size_t to = 0;
-  for (std::size_t i = 0; i < start.size(); ++i)
-    if (start[i] == 0) c.time[to] = c.time[i], c.value[to++] = c.value[i];
-  c.time.resize(to);
-  c.value.resize(to);
+  remove(c, start);
   return left;
 }
 
@@ -105,7 +139,8 @@ void leave_failed(Part& part) {
   Observations& o = part.table;
   for (Channel& c : o.channels)
     if (c.is_temperature())
-      if (auto left = without_start_values(c)) part.channels_left.push_back(std::move(*left));
+      for (const auto find : {without_start_values, without_spikes})
+        if (auto left = find(c)) part.channels_left.push_back(std::move(*left));
   std::vector<ChannelLeft> stuck;
   for (const Channel& c : o.channels)
     if (c.is_temperature() && !c.value.empty())

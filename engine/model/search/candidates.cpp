@@ -174,7 +174,7 @@ class CandidateOf {
     const State rest = f_.bench->without(f_.best, member);
     const Workbench::Gains gains = f_.bench->gains(rest);
     for (std::size_t other = f_.in_model; other < f_.terms.size(); ++other) {
-      if (other == member || f_.bench->holds(f_.best, other)) continue;
+      if (other == member || f_.bench->holds(f_.best, other) || are_one(other, member)) continue;
       State changed = f_.bench->joined(rest, gains, other);
       if ((f_.bench->in_space() || member < f_.in_model) &&
           !(changed.criterion < f_.best.criterion + hopeless))
@@ -196,6 +196,12 @@ class CandidateOf {
   }
 
  private:
+  /// Whether both are one effect, of which one form has a value for each measurement or state: that
+  /// form contains the other, so there is nothing to separate.
+  bool are_one(std::size_t a, std::size_t b) const {
+    return f_.terms[a].of_all() == f_.terms[b].of_all();
+  }
+
   /// Whether a cause with fewer parameters explains nearly as much: a curve can follow any shape,
   /// while the shape of a cause is only approximately known.
   bool is_form_of(std::size_t cause) const {
@@ -242,7 +248,7 @@ class CandidateOf {
       if (score <= c.score) continue;
       c.score = score;
       c.p = f_.unweighted.corrected(p_of(*f_.bench, changed, e));
-      if (as_good(changed)) c.aliases = {f_.terms[member].name()};
+      if (as_good(changed) && !are_one(e, member)) c.aliases = {f_.terms[member].name()};
     }
   }
 

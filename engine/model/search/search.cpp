@@ -50,7 +50,25 @@ std::vector<State> grown(const Workbench& bench, const std::vector<State>& level
   return next;
 }
 
-/// Removes or exchanges one effect; returns false if the criterion does not improve.
+/// Exchanges effects that were taken out of `best`, which leaves `rest`, for one other; returns false
+/// if the criterion does not improve.
+bool exchange(const Workbench& bench, const State& rest, const std::set<std::size_t>& taken,
+              State& best) {
+  const Workbench::Gains gains = bench.gains(rest);
+  for (std::size_t other = 0; other < bench.instances().size(); ++other) {
+    if (taken.contains(other) || bench.holds(rest, other)) continue;
+    State changed = bench.joined(rest, gains, other);
+    if (changed.criterion < best.criterion + 3.0) changed = bench.settled(std::move(changed));
+    if (changed.criterion < best.criterion - 1e-9) {
+      best = std::move(changed);
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Removes or exchanges one effect, or exchanges two of an axis for one: on the way to the cause
+/// they imitate it together. Returns false if the criterion does not improve.
 bool improve(const Workbench& bench, const State& start, State& best) {
   const auto fixed = effects_of(bench, start);
   for (const std::size_t e : effects_of(bench, best)) {
@@ -60,17 +78,16 @@ bool improve(const Workbench& bench, const State& start, State& best) {
       best = rest;
       return true;
     }
-    const Workbench::Gains gains = bench.gains(rest);
-    for (std::size_t other = 0; other < bench.instances().size(); ++other) {
-      if (other == e || bench.holds(rest, other)) continue;
-      State changed = bench.joined(rest, gains, other);
-      if (changed.criterion < best.criterion + 3.0) changed = bench.settled(std::move(changed));
-      if (changed.criterion < best.criterion - 1e-9) {
-        best = std::move(changed);
-        return true;
-      }
-    }
+    if (exchange(bench, rest, {e}, best)) return true;
   }
+  if (bench.in_space()) return false;
+  std::set<std::size_t> found = effects_of(bench, best);
+  std::erase_if(found, [&](std::size_t e) { return fixed.contains(e); });
+  for (auto a = found.begin(); a != found.end(); ++a)
+    for (auto b = std::next(a); b != found.end(); ++b)
+      if (exchange(bench, bench.settled(bench.without(bench.without(best, *a), *b)), {*a, *b},
+                   best))
+        return true;
   return false;
 }
 

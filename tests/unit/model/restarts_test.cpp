@@ -192,6 +192,24 @@ TEST(FailedChannels, ValuesAfterPowerOnAreMissing) {
   EXPECT_GT(*std::min_element(kept->value.begin(), kept->value.end()), 15.0);
 }
 
+TEST(FailedChannels, SpikesAreMissing) {
+  Noise noise;
+  SCOPED_TRACE("seed " + std::to_string(noise.seed));
+  Part part = thermometers(noise);
+  const std::vector<double> before = part.table.channels[1].value;
+  auto& spikes = part.table.channels[1].value;
+  spikes[0] += 8.0, spikes[400] += 3.0, spikes[800] -= 12.0, spikes.back() -= 5.0;
+  auto& steps = part.table.channels[2].value;
+  for (std::size_t i = 600; i < steps.size(); ++i) steps[i] += 6.0;  // a step is no spike
+  leave_failed(part);
+  ASSERT_EQ(part.channels_left.size(), 1U);
+  EXPECT_EQ(part.channels_left[0].why, ChannelLeft::Why::spikes_dropped);
+  EXPECT_EQ(part.channels_left[0].readings, 4U);
+  EXPECT_EQ(part.channels_left[0].value, before[800] - 12.0);
+  EXPECT_FALSE(part.channels_left[0].fails());
+  EXPECT_EQ(part.table.channel("t1")->value.size(), before.size() - 4);
+}
+
 }  // namespace
 
 }  // namespace nonio::model::restarts_test

@@ -206,8 +206,10 @@ TEST(Forecasts, OnlyAStatedDateObliges) {
   MadeMachine steady("S-46"), drifting("S-47");
   for (MadeMachine* m : {&steady, &drifting}) {
     const bool drifts = m == &drifting;
-    m->follow("X", "B_mean", drifts ? std::vector{-2.0, -3.4, -5.1, -6.4} : flat(-2.0, -2.0), 0.3);
-    m->judge("X", "B", drifts ? std::vector{2.1, 3.5, 5.2, 6.5} : flat(2.1, 2.1));
+    const std::vector mean{-0.3, -1.2, -2.2, -3.1, -4.0, -5.0, -5.9, -6.8},
+        B{0.5, 1.4, 2.3, 3.3, 4.2, 5.2, 6.1, 7.0};
+    m->follow("X", "B_mean", drifts ? mean : flat(-2.0, -2.0), 0.3);
+    m->judge("X", "B", drifts ? B : flat(2.1, 2.1));
   }
   std::vector<assessment::AssessedMachine> both{steady.assessed(), drifting.assessed()};
   judge_all(both);

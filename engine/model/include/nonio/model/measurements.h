@@ -38,14 +38,15 @@ struct ChannelLeft {
     speed,                ///< a speed or load: only displacements over time determine its effects
     frozen,               ///< a thermometer that keeps one value while all others move
     start_value,          ///< a thermometer that often returns its value after power-on
-    start_values_dropped  ///< the same, but rarely: only these values are not used
+    start_values_dropped,  ///< the same, but rarely: only these values are not used
+    spikes_dropped         ///< single readings far from those around them, which are not used
   };
   std::string name;
   Why why = Why::partly;
   std::vector<std::string> measurements{};  ///< those that lack the channel, or times
   // The members below apply to a thermometer that fails.
-  double value = 0.0;           ///< degC
-  std::size_t readings = 0;     ///< number of readings with this value
+  double value = 0.0;           ///< degC; of the largest spike
+  std::size_t readings = 0;     ///< number of readings with this value, or of spikes
   double from = 0.0, to = 0.0;  ///< for `frozen`: time of the first and the last of them, s
 
   bool fails() const { return why == Why::frozen || why == Why::start_value; }

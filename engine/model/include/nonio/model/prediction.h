@@ -15,9 +15,9 @@ struct Prediction {
   double rms = 0.0;
   double sd = 0.0;      ///< standard deviation of the readings, m or rad: the error without a model
   double inside = 0.0;  ///< share of the readings with |error| <= 2 u
-  /// for a course: time, s, of the first window of a twentieth of the readings (at least 10) in
-  /// which the RMS of error/u exceeds 2
-  std::optional<double> fails_from{};
+  /// for a course: time, s, from which to the end the RMS of error/u exceeds 2, or until which it
+  /// does from the beginning, in windows of a twentieth of the readings (at least 10)
+  std::optional<double> fails_from{}, fails_until{};
   /// whether an axis leaves the range of the fit by more than 2 % of it, or a channel by 10 %
   bool outside = false;
 };
