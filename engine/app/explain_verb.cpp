@@ -14,6 +14,7 @@
 #include "campaign/modelling/joint_model.h"
 #include "campaign/modelling/model_json.h"
 #include "campaign/reading/names.h"
+#include "campaign/reading/plausibility/plausibility.h"
 #include "campaign_verb.h"
 #include "common.h"
 #include "laboratory/assessment/residuals.h"
@@ -210,6 +211,7 @@ class Explain {
     }
     if (options_.automatic) add_missing();
     if (!steps_.empty()) warn_of_run();
+    warn_of_readings();
     show();
     return failed_ ? exit_failed : exit_done;
   }
@@ -292,6 +294,18 @@ class Explain {
       warnings_.push_back(remark_text(context.templates,
                                       common_.json ? "en" : context.site.language,
                                       Remark{"model.not-asked"}));
+  }
+
+  /// Readings with an apparent mistake have causes that no effect describes.
+  void warn_of_readings() {
+    const reading::Context& context = open_.place->context;
+    for (const Results::Analysed& of :
+         reading::implausible(open_.read, context, open_.read.inputs, {}))
+      for (const Finding& f : of.evaluation.findings)
+        if (f.attention)
+          warnings_.push_back((of.measurement.empty() ? "" : of.measurement + ": ") +
+                              finding_text(context.templates,
+                                           common_.json ? "en" : context.site.language, f, "says"));
   }
 
   static void tell(const std::string& text) { complain(text); }

@@ -416,8 +416,9 @@ bool is_at_floor(const PartModel& part, const model::Explanation& e,
 }
 
 /// Searches causes together with the catalog. The result replaces `out` only if its named effect
-/// has evidence by itself, and if it contains exactly one cause, or none if the catalog already
-/// named an effect. The rate of false alarms is that of the second search.
+/// has evidence by itself, and if it contains exactly one cause; if the catalog already named an
+/// effect, also none, or two in a smaller set: with many causes, sets of two that imitate others are
+/// likely. The rate of false alarms is that of the second search.
 void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;
@@ -439,7 +440,8 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
     return std::find(more->together.begin(), more->together.end(), t.name()) !=
            more->together.end();
   });
-  if (causes > 1 || (causes == 0 && !explained)) return;
+  const std::size_t before = out.together.size(), now = more->together.size();
+  if (causes > (explained && now < before ? 2 : 1) || (causes == 0 && !explained)) return;
   more->keeps = std::move(keeps);
   out = std::move(*more);
 }

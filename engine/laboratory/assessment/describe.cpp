@@ -410,7 +410,7 @@ std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const Show
 }
 
 /// The date is not kept if another quantity of the axis may leave its limit, or if it is before
-/// `day`. A date that is not stated obliges nobody then: the worklist has no line for it.
+/// `day`. The worklist has no line for such a date if it is not stated.
 static void decide_date(std::vector<HistorySeries>& all, const std::string& day) {
   std::set<std::string> may_leave;
   for (const HistorySeries& s : all)
@@ -419,12 +419,12 @@ static void decide_date(std::vector<HistorySeries>& all, const std::string& day)
       may_leave.insert(axis_of(s.axis, s.quantity));
   for (HistorySeries& s : all) {
     if (!s.forecast || s.forecast->answer != "keep") continue;
-    if (!s.limit)
-      s.forecast->answer = "expected";
-    else if (may_leave.contains(axis_of(s.axis, s.quantity)))
-      s.forecast->answer = "other-decides";
-    else if (s.forecast->date < day)
-      s.forecast->answer = "passed";
+    const bool passed = s.forecast->date < day,
+               other = s.limit && may_leave.contains(axis_of(s.axis, s.quantity));
+    s.forecast->answer = other      ? (passed ? "watch-now" : "other-decides")
+                         : passed   ? "passed"
+                         : !s.limit ? "expected"
+                                    : "keep";
   }
 }
 

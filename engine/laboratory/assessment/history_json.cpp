@@ -163,8 +163,7 @@ class HistoryWriter {
     else
       json_.null();
     put_text_or_null(json_, "leaves", says ? f.leaves : "");
-    const bool keeps = f.answer == "expected" || f.answer == "passed";
-    json_.member("answer", keeps                         ? "keep"
+    json_.member("answer", f.answer == "expected"        ? "keep"
                            : f.answer == "other-decides" ? "watch"
                                                          : f.answer);
     json_.end_object();

@@ -543,6 +543,28 @@ class Heat(VerbTest):
             later = [[*row[:1], row[1] + 0.02 * max(0, i - from_row), *row[2:]] for i, row in enumerate(record(seed + 1, [3.0]))]
             part, = self.json("compare", self.campaign("later", later, more=model), "--model-of", seen)["parts"]
             self.assertLess(abs(part["holds_until_s"] - from_row * STEP), 0.06 * ROWS * STEP, part)
+            # An error that ends is none from which on the model does not hold.
+            start = [[*row[:1], row[1] + 6 * math.exp(-i / 60), *row[2:]] for i, row in enumerate(record(seed + 2, [3.0]))]
+            part, = self.json("compare", self.campaign("start", start, more=model), "--model-of", seen)["parts"]
+            self.assertIsNone(part["holds_until_s"], part)
+            self.assertLess(part["holds_from_s"], 0.3 * ROWS * STEP, part)
+
+    def test_displacements_that_move_together_have_causes_of_their_own(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            rng, rows = random.Random(seed), record(seed, [3.0])
+            head = [row[2] for row in rows]  # a bearing, and a housing that it and the hall warm
+            housing = [b + 1.5 * (row[3] - rows[0][3]) for b, row in zip(follow(head, 500.0), rows)]
+            text = "time_s,x_um,z_um,bearing_c,hall_c,housing_c,spindle_rpm\n"
+            for i, row in enumerate(rows):
+                d = [1.2 * (housing[i] - housing[0]) + rng.gauss(0, 0.05), 5 * (head[i] - head[0]) + rng.gauss(0, 0.05)]
+                text += ",".join(f"{v:.4f}" for v in [row[0], *d, row[2], row[3], housing[i] + rng.gauss(0, 0.01), row[4]]) + "\n"
+            folder = self.write("both", MANIFEST.format(id="both", more=""), **{"warm.csv": text})
+            found = {p["part"]: p for p in self.json("explain", folder)["parts"]}
+            for name, effect in (("warm/x", "heat:housing"), ("warm/z", "heat:bearing")):
+                self.assertEqual(found[name]["verdict"]["effect"], effect)
+                own = {c["effect"]: c["rms_um"] for c in found[name]["candidates"]}
+                self.assertEqual(min(own, key=own.get), effect)
 
     def test_a_model_predicts_its_own_runs_as_compare_describes_them(self):
         """Groups and channels of both campaigns are in the columns of the prediction."""

@@ -72,7 +72,7 @@ class Laboratory(unittest.TestCase):
                 self.assertLessEqual(c["p"], c["p_adjusted"])
             if s["forecast"]:
                 self.assertEqual(set(s["forecast"]), {"date", "value", "u", "limit", "p_out", "leaves", "answer"})
-                self.assertIn(s["forecast"]["answer"], ("keep", "watch", "act", "overdue", "cannot-say"))
+                self.assertIn(s["forecast"]["answer"], ("keep", "watch", "watch-now", "act", "overdue", "passed", "cannot-say"))
                 self.assertEqual(s["forecast"]["value"] is None, s["forecast"]["answer"] == "cannot-say")
 
     def test_numbers_are_those_of_the_results(self):

@@ -192,13 +192,13 @@ class Together(unittest.TestCase):
     def test_what_to_measure_next_over_axes_machines_and_parts(self):
         """One list, in which measurements that separate something come first, by their duration."""
         fleet.fleet(self.site, "shared", "zero-drift:X", 0.25, 4, 0.0, random.Random(1))
-        for sample in ("04-drift-parallel", "05-drift-wedge"):
+        for sample in ("04-drift-parallel", "06-long-axis"):
             shutil.copytree(ROOT / "samples" / "site" / sample, self.site / sample)
         (self.site / "plate").mkdir()
         plates.plate(self.site / "plate" / "P1.csv", plates.grid(100), plates.errors("squareness:XY", 4.0), 1.0, 0.0, self.rng)
         plates.write(self.site / "plate", [("P1", 0)])
         answer = self.answer()
-        alone = ["04-drift-parallel Y", "05-drift-wedge X", "plate XY"]
+        alone = ["04-drift-parallel Y", "06-long-axis X", "plate XY"]
         self.assertEqual(sorted(answer["alone"]), alone)
         self.assertNotIn("left_out", answer)
         following = answer["next"]
@@ -211,14 +211,14 @@ class Together(unittest.TestCase):
             self.assertIn(f"{number}. {one['campaign']}, {one['part']}: {one['says']}", printed)
 
     def test_campaigns_of_different_axes_have_their_measurements_too(self):
-        for sample in ("04-drift-parallel", "05-drift-wedge"):
+        for sample in ("04-drift-parallel", "06-long-axis"):
             shutil.copytree(ROOT / "samples" / "site" / sample, self.site / sample)
         answer = self.answer()
         self.assertEqual(answer["parts"], [])
         page = self.site.parent / "page.html"
         self.assertIn("there are none", explain(self.site, "--page", page, status=2).stderr)
         self.assertFalse(page.exists())
-        self.assertEqual({n["campaign"] for n in answer["next"]}, {"04-drift-parallel", "05-drift-wedge"})
+        self.assertEqual({n["campaign"] for n in answer["next"]}, {"04-drift-parallel", "06-long-axis"})
 
     def test_nothing_is_found_where_there_is_nothing(self):
         fleet.fleet(self.site, "none", "", 0.0, 10, 0.3, random.Random(5))

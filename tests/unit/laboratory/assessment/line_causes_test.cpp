@@ -201,7 +201,7 @@ TEST(Forecasts, AskForAMeasurementNowWhereTheLimitMayBeExceededNow) {
   EXPECT_EQ(forecast(early.leaves).answer, "watch-now");
 }
 
-// The worklist has no line for a usual interval that has passed, so the page asks for nothing.
+// The worklist has no line for a usual interval that has passed, so the page requires no action.
 TEST(Forecasts, OnlyAStatedDateObliges) {
   MadeMachine steady("S-46"), drifting("S-47");
   for (MadeMachine* m : {&steady, &drifting}) {
