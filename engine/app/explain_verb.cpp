@@ -423,7 +423,7 @@ Verb explain_verb(Common& common) {
                  {"--page", &options->together.page,
                   "Of several campaigns: also write a page with the residuals of all axes and "
                   "machined parts over position, time, temperature and order"}),
-           {"--all", &options->all, "Every candidate, and why an effect could not be tested"},
+           {"--all", &options->all, "Every candidate that has evidence, and why an effect could not be tested"},
            {"--library", &options->library,
             "Accepted and without effect: the library of causes is always searched"},
            {"--what-if", &options->what_if,

@@ -382,17 +382,21 @@ void leave_out_weaker_groups(model::Explanation& e) {
   });
 }
 
-/// Whether an effect of the best set may be one of the causes in another form: its shape was
-/// searched, or a quantity was recorded that no effect of the catalog depends on.
-bool may_be_imitated(const PartModel& part, const model::Explanation& e) {
+/// Whether an effect may be one of the causes in another form: its shape was searched, or a quantity
+/// was recorded that no effect of the catalog depends on.
+bool may_imitate(const PartModel& part, const model::Candidate& c) {
   const Observations& o = part.part.table;
-  return !o.air.empty() || !o.pressure.empty() || !o.humidity.empty() ||
-         std::any_of(e.candidates.begin(), e.candidates.end(), [&](const model::Candidate& c) {
-           return !c.term.effect->shapes.empty() &&
-                  (&c == &e.candidates.front() ||
-                   std::find(e.together.begin(), e.together.end(), c.term.name()) !=
-                       e.together.end());
-         });
+  return !c.term.effect->shapes.empty() || !o.air.empty() || !o.pressure.empty() ||
+         !o.humidity.empty();
+}
+
+/// Whether the named effect, or another of the best set, may imitate a cause.
+bool set_may_imitate(const PartModel& part, const model::Explanation& e) {
+  return std::any_of(e.candidates.begin(), e.candidates.end(), [&](const model::Candidate& c) {
+    return may_imitate(part, c) &&
+           (&c == &e.candidates.front() ||
+            std::find(e.together.begin(), e.together.end(), c.term.name()) != e.together.end());
+  });
 }
 
 /// Whether runs or passes have zeros that scatter more than the readings within them.
@@ -425,7 +429,7 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
   if (!out.comparison.floor || part.library == nullptr) return;
   const bool explained = out.verdict.kind == Kind::missing,
              is_open = out.verdict.kind == Kind::unknown || has_large_zeros(out.comparison);
-  if (explained ? !may_be_imitated(part, out) : !is_open) return;
+  if (explained ? !set_may_imitate(part, out) : !is_open) return;
   std::shared_ptr<const void> keeps;
   std::vector<model::Term> library = library_of(part, keeps);
   if (explained && out.explains_all) library = model::replacing(part.part, out, std::move(library));
@@ -441,7 +445,9 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
            more->together.end();
   });
   const std::size_t before = out.together.size(), now = more->together.size();
-  if (causes > (explained && now < before ? 2 : 1) || (causes == 0 && !explained)) return;
+  if (causes > (explained && now < before ? 2 : 1) ||
+      (causes == 0 && (!explained || !may_imitate(part, out.candidates.front()))))
+    return;
   more->keeps = std::move(keeps);
   out = std::move(*more);
 }

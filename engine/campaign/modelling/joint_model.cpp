@@ -180,20 +180,26 @@ std::vector<model::Member> members_of(const Together& t) {
   return members;
 }
 
-/// Adds causes that one of `asked` campaigns, evenly chosen, shows, because otherwise other effects
-/// would be named in their place. Returns false without such a cause.
-bool add_named_causes(Together& t, std::size_t asked, std::uint64_t seed) {
-  std::set<std::string> named;
+/// Adds causes that more than half of `asked` campaigns, evenly chosen, show alone, or with `any` one
+/// of them: otherwise other effects would be named in their place. Returns false without such a
+/// cause.
+bool add_named_causes(Together& t, std::size_t asked, bool any, std::uint64_t seed) {
+  std::map<std::string, std::size_t> shown;
   const std::size_t step = (t.parts.size() + asked - 1) / asked;
-  for (std::size_t m = 0; m < t.parts.size(); m += step) {
+  std::size_t explained = 0;
+  for (std::size_t m = 0; m < t.parts.size(); m += step, ++explained) {
     const auto alone = explain_part(t.parts[m], seed);
     if (!alone || alone->verdict.kind != model::Verdict::Kind::missing) continue;
+    const auto& set = alone->together;
     for (const model::Candidate& c : alone->candidates)
-      if (c.term.library && (c.term.name() == alone->verdict.effect ||
-                             std::find(alone->together.begin(), alone->together.end(),
-                                       c.term.name()) != alone->together.end()))
-        named.insert(c.term.of_all());
+      if (c.term.library &&
+          (c.term.name() == alone->verdict.effect ||
+           (!any && std::find(set.begin(), set.end(), c.term.name()) != set.end())))
+        ++shown[c.term.of_all()];
   }
+  std::set<std::string> named;
+  for (const auto& [name, count] : shown)
+    if (any || 2 * count > explained) named.insert(name);
   for (const PartModel& part : t.parts)
     for (const model::Term& known : part.catalogue)
       if (!known.library) named.erase(known.of_all());
@@ -324,12 +330,12 @@ Expected<FleetExplanation> explain_together(
     t.part = (one_kind ? "" : storage::listed(each_once(t.machines)) + " ") + key.axis +
              (key.side.empty() ? "" : " " + key.side);
     constexpr std::size_t few = 8;
-    add_named_causes(t, few, seed);
+    add_named_causes(t, few, false, seed);
     NONIO_TRY(t.explanation, model::explain_together(members_of(t), seed));
     const bool explained =
         t.explanation.verdict == model::Verdict::Kind::nothing ||
         (t.explanation.verdict == model::Verdict::Kind::missing && t.explanation.explains_all);
-    if (!explained && t.parts.size() > few && add_named_causes(t, t.parts.size(), seed)) {
+    if (!explained && add_named_causes(t, t.parts.size(), true, seed)) {
       NONIO_TRY(t.explanation, model::explain_together(members_of(t), seed));
     }
     out.together.push_back(std::move(t));

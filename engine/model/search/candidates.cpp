@@ -174,7 +174,9 @@ class CandidateOf {
     const State rest = f_.bench->without(f_.best, member);
     const Workbench::Gains gains = f_.bench->gains(rest);
     for (std::size_t other = f_.in_model; other < f_.terms.size(); ++other) {
-      if (other == member || f_.bench->holds(f_.best, other) || are_one(other, member)) continue;
+      if (other == member || f_.bench->holds(f_.best, other) || are_one(other, member) ||
+          is_rather(member, other))
+        continue;
       State changed = f_.bench->joined(rest, gains, other);
       if ((f_.bench->in_space() || member < f_.in_model) &&
           !(changed.criterion < f_.best.criterion + hopeless))
@@ -200,6 +202,16 @@ class CandidateOf {
   /// form contains the other, so there is nothing to separate.
   bool are_one(std::size_t a, std::size_t b) const {
     return f_.terms[a].of_all() == f_.terms[b].of_all();
+  }
+
+  /// Whether an effect of the catalog, without a shape that was searched, is named without a cause of
+  /// the library that looks like it: that one would need more than these readings, unless a quantity
+  /// was recorded that no effect of the catalog depends on.
+  bool is_rather(std::size_t effect, std::size_t cause) const {
+    const Observations& o = f_.part.table;
+    return f_.terms[cause].library && !f_.terms[effect].library &&
+           f_.terms[effect].effect->shapes.empty() && o.air.empty() && o.pressure.empty() &&
+           o.humidity.empty();
   }
 
   /// Whether a cause with fewer parameters explains nearly as much: a curve can follow any shape,
@@ -248,7 +260,8 @@ class CandidateOf {
       if (score <= c.score) continue;
       c.score = score;
       c.p = f_.unweighted.corrected(p_of(*f_.bench, changed, e));
-      if (as_good(changed) && !are_one(e, member)) c.aliases = {f_.terms[member].name()};
+      if (as_good(changed) && !are_one(e, member) && !is_rather(member, e))
+        c.aliases = {f_.terms[member].name()};
     }
   }
 

@@ -33,11 +33,11 @@ inline constexpr double time_constants_apart = 2.6;
 /// A recorded channel, or some of its values, that is not used.
 struct ChannelLeft {
   enum class Why {
-    partly,               ///< not recorded next to all measurements
-    untimed,              ///< readings without a time
-    speed,                ///< a speed or load: only displacements over time determine its effects
-    frozen,               ///< a thermometer that keeps one value while all others move
-    start_value,          ///< a thermometer that often returns its value after power-on
+    partly,                ///< not recorded next to all measurements
+    untimed,               ///< readings without a time
+    speed,                 ///< a speed or load: only displacements over time determine its effects
+    frozen,                ///< a thermometer that keeps one value while all others move
+    start_value,           ///< a thermometer that often returns its value after power-on
     start_values_dropped,  ///< the same, but rarely: only these values are not used
     spikes_dropped         ///< single readings far from those around them, which are not used
   };
