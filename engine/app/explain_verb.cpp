@@ -234,16 +234,22 @@ class Explain {
           failed_ = true;
           return;
         }
-        if (!change(effect, true)) return;
+        if (!change(effect, true)) return explain_after_failure();
       }
       if (is_course) {
         const std::size_t kept = best_step(before, left_out, rms);
         for (std::size_t s = next.effects.size() + before; s > kept; --s)
-          if (!change(next.effects[s - 1 - before], false)) return;
+          if (!change(next.effects[s - 1 - before], false)) return explain_after_failure();
         if (kept == before) settled.insert(part);
       }
       explain();
     }
+  }
+
+  /// What is shown is the model as far as it was changed.
+  void explain_after_failure() {
+    explain();
+    failed_ = true;
   }
 
   /// Number of steps after which left-out blocks are predicted best: readings over time are
@@ -261,9 +267,11 @@ class Explain {
     return best;
   }
 
-  /// Removes effects that others added after them have made insignificant, unless the verdict
-  /// becomes another one.
+  /// Removes effects that others added after them have made superfluous: below their uncertainties,
+  /// which effects that replace each other are, too, and without a notable change of what the model
+  /// leaves, of what it predicts, and of the verdicts.
   void drop_unproven() {
+    constexpr double notable = 1.02;
     std::set<std::string> needed;
     for (;;) {
       const auto weak = modelling::unproven_effects(all_);
@@ -274,14 +282,24 @@ class Explain {
       });
       if (effect == weak.end()) return;
       const auto before = modelling::verdicts_of(all_);
-      if (!change(*effect, false)) return;
+      needed.insert(*effect);
+      if (!change(*effect, false)) return explain_after_failure();
+      const modelling::ModelStep& step = steps_.back();
+      const auto grows = [](const auto& from, const auto& to) {
+        return from && to && *to > notable * *from;
+      };
+      bool same = !grows(step.rms_before, step.rms_after) && !grows(step.cv_before, step.cv_after);
       explain();
       const auto after = modelling::verdicts_of(all_);
-      needed.insert(*effect);
-      if (std::equal(before.begin(), before.end(), after.begin(), after.end(),
-                     [](const auto& a, const auto& b) { return a.kind == b.kind; }))
-        continue;
-      if (!change(*effect, true)) return;
+      same = same && std::equal(before.begin(), before.end(), after.begin(), after.end(),
+                                [&](const auto& a, const auto& b) {
+                                  const auto& certain = b.certain;
+                                  return a.kind == b.kind &&
+                                         std::find(certain.begin(), certain.end(), *effect) ==
+                                             certain.end();
+                                });
+      if (same) continue;
+      if (!change(*effect, true)) return explain_after_failure();
       explain();
     }
   }
@@ -345,8 +363,8 @@ class Explain {
   }
 
   bool change(const std::string& effect, bool add) {
-    const auto change = modelling::change_model(open_.folder, open_.read, effect, add,
-                                                known_ ? &*known_ : nullptr);
+    const auto change =
+        modelling::change_model(open_.folder, open_.read, effect, add, known_ ? &*known_ : nullptr);
     if (!change) {
       tell(text_of(change.error()));
       failed_ = true;
@@ -423,7 +441,8 @@ Verb explain_verb(Common& common) {
                  {"--page", &options->together.page,
                   "Of several campaigns: also write a page with the residuals of all axes and "
                   "machined parts over position, time, temperature and order"}),
-           {"--all", &options->all, "Every candidate that has evidence, and why an effect could not be tested"},
+           {"--all", &options->all,
+            "Every candidate that has evidence, and why an effect could not be tested"},
            {"--library", &options->library,
             "Accepted and without effect: the library of causes is always searched"},
            {"--what-if", &options->what_if,

@@ -254,7 +254,8 @@ std::vector<Alone> parts_of_one(const reading::ReadCampaign& read, std::uint64_t
 /// one model for each: the machine, the fixture or the measuring machine has changed between them.
 void part_what_differs(FleetExplanation& all, const Joined& joined, std::uint64_t seed) {
   constexpr double differ_below = 0.001;  // docs/dev/constants.md, M72
-  for (const auto& [id, campaigns] : joined) {
+  for (const auto& [name, campaigns] : joined) {
+    const std::string& id = name;
     const auto is = [&](const Alone& one) { return one.campaign == id; };
     const auto whole = std::find_if(all.alone.begin(), all.alone.end(), is);
     if (whole == all.alone.end()) continue;

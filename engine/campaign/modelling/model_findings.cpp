@@ -312,7 +312,7 @@ static void put_unproven(const model::Explanation& e, Quantity q, Finding& f) {
   const model::Candidate* best = nullptr;
   for (const model::Candidate& c : e.candidates)
     if (is_ranked(c) && (best == nullptr || c.rms < best->rms)) best = &c;
-  if (best == nullptr || !(best->rms <= 0.5 * e.comparison.fit.rms)) return;
+  if (best == nullptr || !(best->rms <= 0.5 * e.comparison.fit.rms) || !(best->p >= 0.01)) return;
   f.id = "verdict.unknown-or-chance";
   f.texts[2].second = best->term.name();
   f.evidence.push_back({"after", best->rms, q});
@@ -357,8 +357,7 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
     f.id = "verdict.unknown-possible";
     f.texts.emplace_back("effects", storage::listed(e.together));
   }
-  if (v.kind == Kind::unknown && part.part.kind == model::Part::Kind::course)
-    put_unproven(e, q, f);
+  if (v.kind == Kind::unknown && part.part.kind == model::Part::Kind::course) put_unproven(e, q, f);
   if (v.below_scatter) f.id = "verdict.unknown-below-scatter";
   if (v.kind == Kind::unknown && !e.certain.empty()) {
     f.id = "verdict.certain";

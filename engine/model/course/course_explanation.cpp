@@ -49,8 +49,8 @@ class CourseExplanation {
       if (single != singles.end()) {
         member.alone = alone - single->second.second;
         member.predicts = own_left_out({}) - own_left_out({single->second.first});
-        member.p_alone = first.p({member.alone, search_.left_out({}) -
-                                                    search_.left_out({single->second.first})});
+        member.p_alone = first.p(
+            {member.alone, search_.left_out({}) - search_.left_out({single->second.first})});
       }
       add_member(member, all);
     }
@@ -215,7 +215,6 @@ class CourseExplanation {
       if (term != search_.entry(e).term && !search_.has_term(set_, term) &&
           one.second < all + same_evidence())
         c.aliases.push_back(search_.term_of(one.first).name());
-    best_ = std::max(best_, {member.predicts, c.term.name()});
     if (member.p < named_p) certain_.emplace_back(member.predicts, c.term.name());
   }
 
@@ -326,22 +325,33 @@ class CourseExplanation {
       out_.plans = plans_of_course(data_, *fit, members, catalogue_);
   }
 
+  /// The member that alone predicts left-out blocks best, of those that are significant in the set or
+  /// alone; of all, if none is.
   std::string named() const {
     if (!first_.empty()) return first_;
-    // Members with p < 0.01, unless another alone leaves less than half of what they leave.
-    const std::string name =
-        certain_.empty() || best_.first > certain_.front().first + std::numbers::ln2
-            ? best_.second
-            : certain_.front().second;
+    const Member* best = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (const bool significant : {true, false}) {
+      if (best != nullptr) break;
+      for (const Member& m : members_) {
+        if (significant && !(std::min(m.p, m.p_alone) < named_p)) continue;
+        const double alone = cv_of(search_.term_of(m.entry).name());
+        if (best == nullptr || alone < least) least = alone, best = &m;
+      }
+    }
     // Of two effects that differ only in the time constants of the set, the first of the catalogue.
-    const auto of_name = std::find_if(members_.begin(), members_.end(), [&](const Member& m) {
-      return search_.term_of(m.entry).name() == name;
-    });
     for (const Member& m : members_)
-      if (of_name != members_.end() && m.alone == of_name->alone &&
-          search_.entry(m.entry).term < search_.entry(of_name->entry).term)
-        return search_.term_of(m.entry).name();
-    return name;
+      if (best != nullptr && m.alone == best->alone &&
+          search_.entry(m.entry).term < search_.entry(best->entry).term)
+        best = &m;
+    return best == nullptr ? "" : search_.term_of(best->entry).name();
+  }
+
+  /// RMS of the cross-validation with the effect as the only addition, m.
+  double cv_of(const std::string& name) const {
+    for (const Candidate& c : out_.candidates)
+      if (c.term.name() == name && c.visible && c.cv_rms) return *c.cv_rms;
+    return std::numeric_limits<double>::infinity();
   }
 
   static bool leaves_only_noise(double rms, const std::optional<NoiseFloor>& floor) {
@@ -355,7 +365,6 @@ class CourseExplanation {
   std::vector<Member> members_;
   std::vector<std::pair<double, std::string>> certain_;
   std::string first_;  ///< effect that alone explains most, if the set was begun with it
-  std::pair<double, std::string> best_{-std::numeric_limits<double>::infinity(), ""};
   Explanation out_;
 };
 

@@ -130,15 +130,25 @@ void find_failure(const std::vector<double>& time, bool zero_kept, Prediction& p
     return zero_kept || !(w > 0.0) ? wee : wee - we * we / w;
   };
   const double failing = above * static_cast<double>(window);  // a window where it does not hold
+  // A few readings with large errors are no part in which the model fails.
+  const auto outside = [&](std::size_t begin, std::size_t end) {
+    std::size_t many = 0;
+    for (std::size_t i = begin; i < end; ++i) many += std::fabs(p.error[i]) > 2.0 * p.u[i] ? 1 : 0;
+    return 4 * many > end - begin;
+  };
   // At least two windows: in one of 20 the limit is exceeded by chance.
+  std::pair<std::size_t, std::size_t> failing_part{0, 0};
   double least = holds(0, count) - failing;
   for (std::size_t k = 0; k + 2 <= count; ++k)
     if (const double cost = holds(0, k) + static_cast<double>(count - k) * failing; cost < least)
-      least = cost, p.fails_from = time[k * window];
+      least = cost, failing_part = {k * window, n}, p.fails_from = time[k * window];
   if (p.fails_from) least -= failing;
   for (std::size_t k = 2; k < count; ++k)
     if (const double cost = holds(k, count) + static_cast<double>(k) * failing; cost < least)
-      least = cost, p.fails_until = time[k * window], p.fails_from.reset();
+      least = cost, failing_part = {0, k * window}, p.fails_until = time[k * window],
+      p.fails_from.reset();
+  if (!outside(failing_part.first, failing_part.second))
+    p.fails_from.reset(), p.fails_until.reset();
 }
 
 /// The part with each channel related to its largest value in `seen`, as the parameters are.

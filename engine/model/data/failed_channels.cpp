@@ -19,7 +19,9 @@ using Channel = Observations::Channel;
 constexpr std::array start_values{85.0, no_thermometer, 0.0};  // degC
 constexpr double far_apart = 5.0;                              // K, from the values around
 constexpr double notable = 0.05;  // part of the readings or of the time
-constexpr double least_spike = 2.0, spike_in_changes = 20.0;  // K; median changes to the next reading
+constexpr double least_spike = 2.0,
+                 spike_in_changes = 20.0;  // K; median changes to the next reading
+constexpr double moves_by = 5.0;           // median second differences of the displacement
 constexpr std::size_t least_equal = 30, least_others = 2;
 constexpr double others_move = 0.5, others_in_digits = 20.0;  // K; steps of the last digit
 constexpr double ln_chance = -14.0;                           // of so many equal values
@@ -40,9 +42,38 @@ void remove(Channel& c, const std::vector<char>& removed) {
   c.value.resize(to);
 }
 
+/// Whether a displacement moves at this time more than it usually does from reading to reading: then
+/// what a thermometer shows there is no failure.
+class Movement {
+ public:
+  explicit Movement(const Observations& o) : time_(o.time) {
+    for (std::size_t i = 1; i + 1 < o.deviation.size(); ++i)
+      change_.push_back(std::fabs(o.deviation[i - 1] - 2.0 * o.deviation[i] + o.deviation[i + 1]));
+    usual_ = change_;
+    const auto middle = usual_.begin() + static_cast<std::ptrdiff_t>(usual_.size() / 2);
+    if (!usual_.empty()) std::nth_element(usual_.begin(), middle, usual_.end());
+    limit_ = usual_.empty() ? std::numeric_limits<double>::infinity() : moves_by * *middle;
+  }
+
+  bool at(double time) const {
+    const auto row = std::lower_bound(time_.begin(), time_.end(), time) - time_.begin();
+    for (auto i = std::max<std::ptrdiff_t>(row - 1, 0); i < row + 2; ++i)  // change_[i]: row i + 1
+      if (i < static_cast<std::ptrdiff_t>(change_.size()) &&
+          change_[static_cast<std::size_t>(i)] > limit_)
+        return true;
+    return false;
+  }
+
+ private:
+  const std::vector<double>& time_;
+  std::vector<double> change_, usual_;
+  double limit_;
+};
+
 /// Removes single readings far from the course of those around them, which a body that has warmed
-/// cannot leave and reach again at once. If they are many, the channel may really change so fast.
-std::optional<ChannelLeft> without_spikes(Channel& c) {
+/// cannot leave and reach again at once. If they are many, or the displacement moves at most of
+/// them, the channel really changes so fast.
+std::optional<ChannelLeft> without_spikes(Channel& c, const Movement& movement) {
   const std::size_t n = c.value.size();
   if (n < least_equal) return std::nullopt;
   std::vector<double> changes;
@@ -53,17 +84,20 @@ std::optional<ChannelLeft> without_spikes(Channel& c) {
   std::vector<char> spike(n, 0);
   ChannelLeft left{c.name, ChannelLeft::Why::spikes_dropped};
   double largest = 0.0;
+  std::size_t moved = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const double before = c.value[i > 0 ? i - 1 : 1], after = c.value[i + 1 < n ? i + 1 : n - 2];
     const double off = std::min(std::fabs(c.value[i] - before), std::fabs(c.value[i] - after));
-    const bool returns = (c.value[i] > before) == (c.value[i] > after) &&
-                         std::fabs(after - before) < 0.5 * off;
+    const bool returns =
+        (c.value[i] > before) == (c.value[i] > after) && std::fabs(after - before) < 0.5 * off;
     if (!returns || !(off > least)) continue;
     spike[i] = 1;
     ++left.readings;
+    if (movement.at(c.time[i])) ++moved;
     if (off > largest) largest = off, left.value = c.value[i];
   }
-  if (left.readings == 0 || static_cast<double>(left.readings) > notable * static_cast<double>(n))
+  if (left.readings == 0 || 2 * moved > left.readings ||
+      static_cast<double>(left.readings) > notable * static_cast<double>(n))
     return std::nullopt;
   remove(c, spike);
   return left;
@@ -137,10 +171,11 @@ std::optional<ChannelLeft> frozen(const Channel& c, const std::vector<Channel>& 
 
 void leave_failed(Part& part) {
   Observations& o = part.table;
+  const Movement movement(o);
   for (Channel& c : o.channels)
     if (c.is_temperature())
-      for (const auto find : {without_start_values, without_spikes})
-        if (auto left = find(c)) part.channels_left.push_back(std::move(*left));
+      for (auto& left : {without_start_values(c), without_spikes(c, movement)})
+        if (left) part.channels_left.push_back(*left);
   std::vector<ChannelLeft> stuck;
   for (const Channel& c : o.channels)
     if (c.is_temperature() && !c.value.empty())

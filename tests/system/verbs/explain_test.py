@@ -80,6 +80,26 @@ class Explain(VerbTest):
             named = self.explain_with(770, error)["verdict"]
             self.assertEqual((named["kind"], named.get("effect")), ("missing", cause))
 
+    def test_a_zero_that_settles_beside_a_play_is_no_warm_up(self):
+        """Nor is a reversal with a value for each measurement another effect than the reversal."""
+        seed = random.SystemRandom().randrange(2**31)
+        print("seed", seed)
+        rng, named = random.Random(seed), []
+        for _ in range(3):
+            rows, k = ["run,direction,target_mm,deviation_um,time_s"], 0
+            settles, size = rng.uniform(8, 14), rng.uniform(4, 6)
+            for run in range(1, 6):
+                for way in "+-":
+                    for i in range(21) if way == "+" else range(20, -1, -1):
+                        value = size * (1 - math.exp(-k / 210 * settles)) + (1.5 if way == "+" else -1.5) + rng.gauss(0, 0.3)
+                        rows.append(f"{run},{way},{40 * i + 3 * (i % 3)},{value:.3f},{12 * k}")
+                        k += 1
+            self.campaign(manifest([]), x="\n".join(rows) + "\n")
+            answer = self.explain()
+            self.assertFalse([a for c in answer["candidates"] for a in c["aliases"] if a == c["effect"].split("@")[0]])
+            named.append({answer["verdict"].get("effect"), *answer["certain"]} == {"backlash:X", "settling-zero:X"})
+        self.assertGreaterEqual(named.count(True), 2, named)
+
     def test_two_causes_of_the_same_readings_are_both_named(self):
         """The first run apart: the run, or a jump after it."""
         answer = self.explain_with(771, lambda z, d, run: 12.0 * (run == 1))
