@@ -224,22 +224,20 @@ class Explain {
       if (next.of == nullptr) return drop_unproven();
       const std::string part = next.of->part.part.name;
       const bool is_course = next.of->part.part.kind == model::Part::Kind::course;
-      const auto left_out = next.of->explanation.comparison.cv_rms;
-      const double rms = next.of->explanation.comparison.fit.rms;
       const std::size_t before = steps_.size();
-      for (const std::string& effect : next.effects) {
-        if (steps_.size() >= most_steps * all_.size()) {
-          tell(std::to_string(steps_.size()) +
-               " effects were added and one is still missing; stopped");
-          failed_ = true;
-          return;
-        }
-        if (!change(effect, true)) return explain_after_failure();
+      const auto added = static_cast<std::size_t>(
+          std::count_if(steps_.begin(), steps_.end(), [](const auto& step) { return step.added; }));
+      if (added + next.effects.size() > most_steps * all_.size()) {
+        tell(std::to_string(added) + " effects were added and one is still missing; stopped");
+        failed_ = true;
+        return;
       }
+      for (const std::string& effect : next.effects)
+        if (!change(effect, true, part)) return explain_after_failure();
       if (is_course) {
-        const std::size_t kept = best_step(before, left_out, rms);
+        const std::size_t kept = best_step(before);
         for (std::size_t s = next.effects.size() + before; s > kept; --s)
-          if (!change(next.effects[s - 1 - before], false)) return explain_after_failure();
+          if (!change(next.effects[s - 1 - before], false, part)) return explain_after_failure();
         if (kept == before) settled.insert(part);
       }
       explain();
@@ -254,12 +252,13 @@ class Explain {
 
   /// Number of steps after which left-out blocks are predicted best: readings over time are
   /// correlated, and what describes them can predict others worse, or leave more.
-  std::size_t best_step(std::size_t from, std::optional<double> left_out, double rms) const {
+  std::size_t best_step(std::size_t from) const {
     std::size_t best = from;
+    auto left_out = steps_[from].cv_before;
     for (std::size_t s = from; s < steps_.size(); ++s) {
       const modelling::ModelStep& step = steps_[s];
       if (!step.cv_after || !step.rms_after || (left_out && *step.cv_after >= *left_out) ||
-          *step.rms_after >= rms)
+          (steps_[from].rms_before && *step.rms_after >= *steps_[from].rms_before))
         continue;
       best = s + 1;
       left_out = step.cv_after;
@@ -267,11 +266,10 @@ class Explain {
     return best;
   }
 
-  /// Removes effects that others added after them have made superfluous: below their uncertainties,
-  /// which effects that replace each other are, too, and without a notable change of what the model
-  /// leaves, of what it predicts, and of the verdicts.
+  /// Removes effects that others added after them have made superfluous: those below their
+  /// uncertainties, which effects that replace each other are, too, without which nothing notable
+  /// changes.
   void drop_unproven() {
-    constexpr double notable = 1.02;
     std::set<std::string> needed;
     for (;;) {
       const auto weak = modelling::unproven_effects(all_);
@@ -281,27 +279,39 @@ class Explain {
                            [&](const auto& step) { return step.added && step.effect == name; });
       });
       if (effect == weak.end()) return;
-      const auto before = modelling::verdicts_of(all_);
       needed.insert(*effect);
+      std::vector<std::string> others = open_.campaign().model;
+      std::erase(others, *effect);
+      const std::vector<Error> errors = errors_;
+      const bool failed = failed_;
+      auto without = explained(others, all_);
+      if (!without || !is_as_good(*without, *effect)) {
+        errors_ = errors, failed_ = failed;
+        continue;
+      }
       if (!change(*effect, false)) return explain_after_failure();
-      const modelling::ModelStep& step = steps_.back();
-      const auto grows = [](const auto& from, const auto& to) {
-        return from && to && *to > notable * *from;
-      };
-      bool same = !grows(step.rms_before, step.rms_after) && !grows(step.cv_before, step.cv_after);
-      explain();
-      const auto after = modelling::verdicts_of(all_);
-      same = same && std::equal(before.begin(), before.end(), after.begin(), after.end(),
-                                [&](const auto& a, const auto& b) {
-                                  const auto& certain = b.certain;
-                                  return a.kind == b.kind &&
-                                         std::find(certain.begin(), certain.end(), *effect) ==
-                                             certain.end();
-                                });
-      if (same) continue;
-      if (!change(*effect, true)) return explain_after_failure();
-      explain();
+      all_ = std::move(*without);
     }
+  }
+
+  /// Whether no part leaves notably more without the effect, predicts notably worse, has another
+  /// verdict, or names the effect.
+  bool is_as_good(const std::vector<modelling::Explained>& without,
+                  const std::string& effect) const {
+    constexpr double notable = 1.02;  // docs/dev/constants.md, M73
+    if (without.size() != all_.size()) return false;
+    const auto before = modelling::verdicts_of(all_), after = modelling::verdicts_of(without);
+    for (std::size_t i = 0; i < without.size(); ++i) {
+      const model::Comparison &one = all_[i].explanation.comparison,
+                              &other = without[i].explanation.comparison;
+      const auto& certain = after[i].certain;
+      if (before[i].kind != after[i].kind || after[i].effect == effect ||
+          std::find(certain.begin(), certain.end(), effect) != certain.end() ||
+          other.fit.rms > notable * one.fit.rms ||
+          (one.cv_rms && other.cv_rms && *other.cv_rms > notable * *one.cv_rms))
+        return false;
+    }
+    return true;
   }
 
   void warn_of_run() {
@@ -328,43 +338,53 @@ class Explain {
 
   static void tell(const std::string& text) { complain(text); }
 
-  int explain() {
-    const std::vector<modelling::Explained> before = std::exchange(all_, {});
-    errors_ = open_.read.errors;
-    failed_ = !errors_.empty();
-    auto parts = modelling::part_models(open_.read, open_.campaign().model);
-    if (!parts) {
-      tell(text_of(parts.error()));
-      return exit_usage;
-    }
+  /// The explanation of each part with these effects; those of `known` for parts with the same
+  /// ones. Parts that cannot be explained are left out; their errors are in `errors_`.
+  Expected<std::vector<modelling::Explained>> explained(
+      const std::vector<std::string>& effects, const std::vector<modelling::Explained>& known) {
+    NONIO_TRY(auto parts, modelling::part_models(open_.read, effects));
     warnings_.clear();
-    for (const std::string& effect : modelling::unmeasured(open_.campaign().model, *parts))
+    for (const std::string& effect : modelling::unmeasured(effects, parts))
       warnings_.push_back(words_->unmeasured(effect));
-    for (modelling::PartModel& part : *parts)
+    if (parts.empty())
+      tell(text_of(errors_.emplace_back(modelling::nothing_to_compare(open_.read))));
+    std::vector<modelling::Explained> out;
+    for (modelling::PartModel& part : parts) {
       modelling::use_priors(
           part, config::priors_of(fleet_, open_.campaign().machine, {open_.campaign().id}));
-    if (parts->empty())
-      tell(text_of(errors_.emplace_back(modelling::nothing_to_compare(open_.read))));
-    for (modelling::PartModel& part : *parts) {
-      const auto known = std::find_if(before.begin(), before.end(), [&](const auto& one) {
-        return one.part.part.name == part.part.name && one.part.names() == part.names();
+      const auto one = std::find_if(known.begin(), known.end(), [&](const auto& k) {
+        return k.part.part.name == part.part.name && k.part.names() == part.names();
       });
-      auto explanation = known == before.end() ? modelling::explain_part(part, options_.seed)
-                                               : Expected<model::Explanation>(known->explanation);
+      auto explanation = one == known.end() ? modelling::explain_part(part, options_.seed)
+                                            : Expected<model::Explanation>(one->explanation);
       if (explanation) {
-        all_.push_back({std::move(part), std::move(*explanation)});
+        out.push_back({std::move(part), std::move(*explanation)});
         continue;
       }
       tell(text_of(explanation.error()));
       errors_.push_back(explanation.error());
       failed_ = true;
     }
+    return out;
+  }
+
+  int explain() {
+    const std::vector<modelling::Explained> before = std::exchange(all_, {});
+    errors_ = open_.read.errors;
+    failed_ = !errors_.empty();
+    auto now = explained(open_.campaign().model, before);
+    if (!now) {
+      tell(text_of(now.error()));
+      return exit_usage;
+    }
+    all_ = std::move(*now);
     return all_.empty() ? exit_failed : exit_done;
   }
 
-  bool change(const std::string& effect, bool add) {
-    const auto change =
-        modelling::change_model(open_.folder, open_.read, effect, add, known_ ? &*known_ : nullptr);
+  /// `part`: the one that the step compares, as in modelling::ModelEdit.
+  bool change(const std::string& effect, bool add, const std::string& part = {}) {
+    const auto change = modelling::change_model(open_.folder, open_.read, effect, add,
+                                                known_ ? &*known_ : nullptr, part);
     if (!change) {
       tell(text_of(change.error()));
       failed_ = true;

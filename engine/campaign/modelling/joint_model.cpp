@@ -185,10 +185,9 @@ std::vector<model::Member> members_of(const Together& t) {
 /// cause.
 bool add_named_causes(Together& t, std::size_t asked, bool any, std::uint64_t seed) {
   std::map<std::string, std::size_t> shown;
-  const std::size_t step = (t.parts.size() + asked - 1) / asked;
-  std::size_t explained = 0;
-  for (std::size_t m = 0; m < t.parts.size(); m += step, ++explained) {
-    const auto alone = explain_part(t.parts[m], seed);
+  asked = std::min(asked, t.parts.size());
+  for (std::size_t m = 0; m < asked; ++m) {
+    const auto alone = explain_part(t.parts[m * t.parts.size() / asked], seed);
     if (!alone || alone->verdict.kind != model::Verdict::Kind::missing) continue;
     const auto& set = alone->together;
     for (const model::Candidate& c : alone->candidates)
@@ -199,7 +198,7 @@ bool add_named_causes(Together& t, std::size_t asked, bool any, std::uint64_t se
   }
   std::set<std::string> named;
   for (const auto& [name, count] : shown)
-    if (any || 2 * count > explained) named.insert(name);
+    if (any || 2 * count > asked) named.insert(name);
   for (const PartModel& part : t.parts)
     for (const model::Term& known : part.catalogue)
       if (!known.library) named.erase(known.of_all());
@@ -330,7 +329,7 @@ Expected<FleetExplanation> explain_together(
     }
     t.part = (one_kind ? "" : storage::listed(each_once(t.machines)) + " ") + key.axis +
              (key.side.empty() ? "" : " " + key.side);
-    constexpr std::size_t few = 8;
+    constexpr std::size_t few = 8;  // docs/dev/constants.md, M73
     add_named_causes(t, few, false, seed);
     NONIO_TRY(t.explanation, model::explain_together(members_of(t), seed));
     const bool explained =

@@ -15,11 +15,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns nullopt if no measurement shows the effect. The catalog takes time, so it is made only
+/// Returns nullopt if no measurement shows the effect, or not that of `edit.part`. The catalog takes time, so it is made only
 /// if the model cannot be fitted or does not contain the effect.
 Expected<std::optional<Compared>> compare_axis(const reading::ReadCampaign& read,
                                                const std::vector<std::string>& effects,
-                                               const std::string& effect) {
+                                               const ModelEdit& edit) {
+  const std::string& effect = edit.effect;
   if (auto right = without_mistakes(effects, read); !right) return fail(right.error());
   const bool has = find_effect(effects, effect) != nullptr;
   for (PartModel& part : bare_parts(read)) {
@@ -28,7 +29,7 @@ Expected<std::optional<Compared>> compare_axis(const reading::ReadCampaign& read
       fill_interpolated(part, read);
     else
       fill_catalogue(part, read);
-    if (!part.shows(effect)) continue;
+    if (!part.shows(effect) || (!edit.part.empty() && part.part.name != edit.part)) continue;
     NONIO_TRY(auto comparison, compare_part(part));
     return Compared{std::move(part), std::move(comparison)};
   }
@@ -96,7 +97,7 @@ Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<st
     const auto found = std::find(change.effects.begin(), change.effects.end(), effect);
     if (found != change.effects.end()) change.effects.erase(found);
   }
-  auto after = compare_axis(read, change.effects, effect);
+  auto after = compare_axis(read, change.effects, edit);
   if (!after) {
     if (add) return fail(after.error());
   } else {
@@ -104,7 +105,7 @@ Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<st
   }
   if (known != nullptr && change.after && known->part.part.name == change.after->part.part.name) {
     change.before = *known;
-  } else if (auto before = compare_axis(read, model, effect); before) {
+  } else if (auto before = compare_axis(read, model, edit); before) {
     change.before = std::move(*before);
   } else {
     change.no_before = before.error().message;
@@ -222,8 +223,10 @@ Expected<std::vector<Change>> change_campaign(const fs::path& folder, reading::R
 }
 
 Expected<Change> change_model(const fs::path& folder, reading::ReadCampaign& read,
-                              const std::string& effect, bool add, const Compared* known) {
-  NONIO_TRY(auto changes, change_campaign(folder, read, {.model = {{effect, add, {}}}}, known));
+                              const std::string& effect, bool add, const Compared* known,
+                              const std::string& part) {
+  NONIO_TRY(auto changes,
+            change_campaign(folder, read, {.model = {{effect, add, {}, part}}}, known));
   return std::move(changes.front());
 }
 

@@ -29,6 +29,8 @@ struct ModelEdit {
   std::string effect;
   bool add = true;
   std::string why{};  ///< comment for the history
+  /// Part that the step compares; if empty, the first that shows the effect.
+  std::string part{};
 };
 /// Returns removals first, then additions.
 std::vector<ModelEdit> edits_between(const std::vector<std::string>& from,
@@ -52,6 +54,7 @@ Expected<std::vector<Change>> change_campaign(const std::filesystem::path& folde
 
 /// Changes campaign.toml and the history completely or not at all. `read` receives the new model.
 Expected<Change> change_model(const std::filesystem::path& folder, reading::ReadCampaign& read,
-                              const std::string& effect, bool add, const Compared* known = nullptr);
+                              const std::string& effect, bool add, const Compared* known = nullptr,
+                              const std::string& part = {});
 
 }  // namespace nonio::modelling

@@ -309,12 +309,15 @@ std::optional<ModelFit::Curve> curve_of(const PartModel& part, const model::Fit&
 
 /// A single effect that would leave at most half of a course, but which chance may imitate.
 static void put_unproven(const model::Explanation& e, Quantity q, Finding& f) {
+  constexpr double at_most = 0.5, chance = 0.01;  // docs/dev/constants.md, M73
   const model::Candidate* best = nullptr;
   for (const model::Candidate& c : e.candidates)
     if (is_ranked(c) && (best == nullptr || c.rms < best->rms)) best = &c;
-  if (best == nullptr || !(best->rms <= 0.5 * e.comparison.fit.rms) || !(best->p >= 0.01)) return;
+  if (best == nullptr || !(best->rms <= at_most * e.comparison.fit.rms) || !(best->p >= chance))
+    return;
   f.id = "verdict.unknown-or-chance";
-  f.texts[2].second = best->term.name();
+  for (auto& [key, text] : f.texts)
+    if (key == "effect") text = best->term.name();
   f.evidence.push_back({"after", best->rms, q});
   f.evidence.push_back({"p", best->p, Quantity::probability});
 }

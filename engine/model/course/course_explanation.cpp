@@ -87,7 +87,7 @@ class CourseExplanation {
     double loss, p;
     double alone = 0.0;     ///< gain of ln evidence as the only addition to the model
     double predicts = 0.0;  ///< decrease of ln(RMS) of the cross-validation as the only addition
-    double p_alone = 1.0;   ///< p-value of these two gains
+    double p_alone = 1.0;   ///< p-value as the only addition, of all displacements together
   };
 
   /// ln(RMS) of the cross-validation of this displacement: those that move together share a search,
@@ -96,25 +96,31 @@ class CourseExplanation {
 
   /// Evidence can increase while blocks of time that are left out are predicted worse, or while more
   /// is left, which correlated noise then describes. Drops the effects whose values are below their
-  /// uncertainties, and those without which these blocks are predicted at least as well or less is
-  /// left, but not those of `kept`: if these are below their uncertainties, others that replace them.
+  /// uncertainties, and those without which these blocks are predicted at least as well or clearly
+  /// less is left, but not those of `kept`: if these are below their uncertainties, others that
+  /// replace them.
   CourseSet proven(CourseSet set, const CourseSet& kept = {}) const {
     Whole now = whole(set);
     while (!set.empty()) {
-      CourseSet best;
-      Whole least;
+      CourseSet best, smallest;
+      Whole least, smallest_left;
       const bool kept_is_weak = !kept.empty() && now.weak == names_of(kept);
       for (const std::size_t e : set) {
         const bool weak = kept_is_weak || contains(now.weak, search_.term_of(e).name());
         if ((!weak && !now.weak.empty()) || std::find(kept.begin(), kept.end(), e) != kept.end())
           continue;
         CourseSet others = CourseSearch::without(set, e);
-        if (Whole one = whole(others); best.size() != others.size() || one.ln_rms < least.ln_rms)
+        Whole one = whole(others);
+        if (smallest.size() != others.size() || one.rms < smallest_left.rms)
+          smallest_left = one, smallest = others;
+        if (best.size() != others.size() || one.ln_rms < least.ln_rms)
           least = std::move(one), best = std::move(others);
       }
-      if (best.size() + 1 != set.size() ||
-          (now.weak.empty() && least.ln_rms > now.ln_rms && least.rms > now.rms))
-        break;
+      if (best.size() + 1 != set.size()) break;
+      if (now.weak.empty() && least.ln_rms > now.ln_rms) {
+        if (!(same_course_rms * smallest_left.rms < now.rms)) break;
+        least = std::move(smallest_left), best = std::move(smallest);
+      }
       now = std::move(least), set = std::move(best);
     }
     return set;
@@ -126,6 +132,7 @@ class CourseExplanation {
   /// what the best effect of the set alone leaves, and comes closer (in ln RMS) to the whole set than
   /// to this, or is in a set that predicts as well.
   void begin_with_best_alone(const std::map<std::size_t, std::pair<std::size_t, double>>& singles) {
+    if (set_.empty()) return;
     constexpr double none = std::numeric_limits<double>::infinity();
     double least = none, least_of_set = none, least_level = none;
     std::size_t alone = 0, likeliest = 0;
@@ -135,7 +142,6 @@ class CourseExplanation {
       if (level < least_level) least_level = level, likeliest = one.first;
       if (search_.has_term(set_, term)) least_of_set = std::min(least_of_set, ln_rms);
     }
-    if (set_.empty()) return;
     const Whole model = whole({});
     for (const std::size_t e : {likeliest, alone})
       if (const Whole one = whole({e});

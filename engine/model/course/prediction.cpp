@@ -130,7 +130,7 @@ void find_failure(const std::vector<double>& time, bool zero_kept, Prediction& p
     return zero_kept || !(w > 0.0) ? wee : wee - we * we / w;
   };
   const double failing = above * static_cast<double>(window);  // a window where it does not hold
-  // A few readings with large errors are no part in which the model fails.
+  // A few readings with large errors are no part in which the model fails: docs/dev/constants.md, M73.
   const auto outside = [&](std::size_t begin, std::size_t end) {
     std::size_t many = 0;
     for (std::size_t i = begin; i < end; ++i) many += std::fabs(p.error[i]) > 2.0 * p.u[i] ? 1 : 0;

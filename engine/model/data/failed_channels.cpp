@@ -42,32 +42,48 @@ void remove(Channel& c, const std::vector<char>& removed) {
   c.value.resize(to);
 }
 
-/// Whether a displacement moves at this time more than it usually does from reading to reading: then
-/// what a thermometer shows there is no failure.
+/// Whether a displacement over time moves at this time more than it usually does from reading to
+/// reading: then what a thermometer shows there is no failure.
 class Movement {
  public:
-  explicit Movement(const Observations& o) : time_(o.time) {
-    for (std::size_t i = 1; i + 1 < o.deviation.size(); ++i)
-      change_.push_back(std::fabs(o.deviation[i - 1] - 2.0 * o.deviation[i] + o.deviation[i + 1]));
-    usual_ = change_;
-    const auto middle = usual_.begin() + static_cast<std::ptrdiff_t>(usual_.size() / 2);
-    if (!usual_.empty()) std::nth_element(usual_.begin(), middle, usual_.end());
-    limit_ = usual_.empty() ? std::numeric_limits<double>::infinity() : moves_by * *middle;
+  explicit Movement(const Part& part) : time_(part.table.time) {
+    if (part.kind != Part::Kind::course) return;
+    displacements_.push_back(changes_of(part.table.deviation));
+    for (const std::vector<double>& companion : part.companions)
+      displacements_.push_back(changes_of(companion));
   }
 
   bool at(double time) const {
     const auto row = std::lower_bound(time_.begin(), time_.end(), time) - time_.begin();
-    for (auto i = std::max<std::ptrdiff_t>(row - 1, 0); i < row + 2; ++i)  // change_[i]: row i + 1
-      if (i < static_cast<std::ptrdiff_t>(change_.size()) &&
-          change_[static_cast<std::size_t>(i)] > limit_)
-        return true;
-    return false;
+    return std::any_of(displacements_.begin(), displacements_.end(), [&](const Changes& d) {
+      for (auto i = std::max<std::ptrdiff_t>(row - 2, 0); i <= row; ++i)  // of row i + 1
+        if (i < static_cast<std::ptrdiff_t>(d.sizes.size()) &&
+            d.sizes[static_cast<std::size_t>(i)] > d.limit)
+          return true;
+      return false;
+    });
   }
 
  private:
+  struct Changes {
+    std::vector<double> sizes;  ///< second differences
+    double limit;
+  };
+
+  static Changes changes_of(const std::vector<double>& y) {
+    Changes out{{}, std::numeric_limits<double>::infinity()};
+    for (std::size_t i = 1; i + 1 < y.size(); ++i)
+      out.sizes.push_back(std::fabs(y[i - 1] - 2.0 * y[i] + y[i + 1]));
+    std::vector<double> sorted = out.sizes;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    if (sorted.empty()) return out;
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    if (*middle > 0.0) out.limit = moves_by * *middle;
+    return out;
+  }
+
   const std::vector<double>& time_;
-  std::vector<double> change_, usual_;
-  double limit_;
+  std::vector<Changes> displacements_;
 };
 
 /// Removes single readings far from the course of those around them, which a body that has warmed
@@ -171,11 +187,14 @@ std::optional<ChannelLeft> frozen(const Channel& c, const std::vector<Channel>& 
 
 void leave_failed(Part& part) {
   Observations& o = part.table;
-  const Movement movement(o);
+  const Movement movement(part);
   for (Channel& c : o.channels)
-    if (c.is_temperature())
-      for (auto& left : {without_start_values(c), without_spikes(c, movement)})
-        if (left) part.channels_left.push_back(*left);
+    if (c.is_temperature()) {
+      const auto started = without_start_values(c);
+      if (started) part.channels_left.push_back(*started);
+      if (started && started->fails()) continue;
+      if (auto spikes = without_spikes(c, movement)) part.channels_left.push_back(*spikes);
+    }
   std::vector<ChannelLeft> stuck;
   for (const Channel& c : o.channels)
     if (c.is_temperature() && !c.value.empty())

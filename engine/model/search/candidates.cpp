@@ -174,8 +174,8 @@ class CandidateOf {
     const State rest = f_.bench->without(f_.best, member);
     const Workbench::Gains gains = f_.bench->gains(rest);
     for (std::size_t other = f_.in_model; other < f_.terms.size(); ++other) {
-      if (other == member || f_.bench->holds(f_.best, other) || are_one(other, member) ||
-          is_rather(member, other))
+      if (other == member || f_.bench->holds(f_.best, other) || are_same_effect(other, member) ||
+          is_preferred_to_cause(member, other))
         continue;
       State changed = f_.bench->joined(rest, gains, other);
       if ((f_.bench->in_space() || member < f_.in_model) &&
@@ -200,14 +200,14 @@ class CandidateOf {
  private:
   /// Whether both are one effect, of which one form has a value for each measurement or state: that
   /// form contains the other, so there is nothing to separate.
-  bool are_one(std::size_t a, std::size_t b) const {
+  bool are_same_effect(std::size_t a, std::size_t b) const {
     return f_.terms[a].of_all() == f_.terms[b].of_all();
   }
 
   /// Whether an effect of the catalog, without a shape that was searched, is named without a cause of
   /// the library that looks like it: that one would need more than these readings, unless a quantity
   /// was recorded that no effect of the catalog depends on.
-  bool is_rather(std::size_t effect, std::size_t cause) const {
+  bool is_preferred_to_cause(std::size_t effect, std::size_t cause) const {
     const Observations& o = f_.part.table;
     return f_.terms[cause].library && !f_.terms[effect].library &&
            f_.terms[effect].effect->shapes.empty() && o.air.empty() && o.pressure.empty() &&
@@ -260,7 +260,7 @@ class CandidateOf {
       if (score <= c.score) continue;
       c.score = score;
       c.p = f_.unweighted.corrected(p_of(*f_.bench, changed, e));
-      if (as_good(changed) && !are_one(e, member) && !is_rather(member, e))
+      if (as_good(changed) && !are_same_effect(e, member) && !is_preferred_to_cause(member, e))
         c.aliases = {f_.terms[member].name()};
     }
   }

@@ -67,8 +67,8 @@ bool exchange(const Workbench& bench, const State& rest, const std::set<std::siz
   return false;
 }
 
-/// Removes or exchanges one effect, or exchanges two of an axis for one: on the way to the cause
-/// they imitate it together. Returns false if the criterion does not improve.
+/// Removes or exchanges one effect, or exchanges two of an axis for one: two effects that were added
+/// first may imitate it together. Returns false if the criterion does not improve.
 bool improve(const Workbench& bench, const State& start, State& best) {
   const auto fixed = effects_of(bench, start);
   for (const std::size_t e : effects_of(bench, best)) {

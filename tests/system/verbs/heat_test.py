@@ -543,7 +543,7 @@ class Heat(VerbTest):
             later = [[*row[:1], row[1] + 0.02 * max(0, i - from_row), *row[2:]] for i, row in enumerate(record(seed + 1, [3.0]))]
             part, = self.json("compare", self.campaign("later", later, more=model), "--model-of", seen)["parts"]
             self.assertLess(abs(part["holds_until_s"] - from_row * STEP), 0.06 * ROWS * STEP, part)
-            # An error that ends is none from which on the model does not hold.
+            # After an error that ends, the model holds.
             start = [[*row[:1], row[1] + 6 * math.exp(-i / 60), *row[2:]] for i, row in enumerate(record(seed + 2, [3.0]))]
             part, = self.json("compare", self.campaign("start", start, more=model), "--model-of", seen)["parts"]
             self.assertIsNone(part["holds_until_s"], part)
