@@ -335,22 +335,18 @@ class CourseExplanation {
   /// alone; of all, if none is.
   std::string named() const {
     if (!first_.empty()) return first_;
-    const Member* best = nullptr;
-    double least = std::numeric_limits<double>::infinity();
-    for (const bool significant : {true, false}) {
-      if (best != nullptr) break;
-      for (const Member& m : members_) {
-        if (significant && !(std::min(m.p, m.p_alone) < named_p)) continue;
-        const double alone = cv_of(search_.term_of(m.entry).name());
-        if (best == nullptr || alone < least) least = alone, best = &m;
-      }
-    }
+    const auto rank = [&](const Member& m) {
+      return std::pair(!(std::min(m.p, m.p_alone) < named_p),
+                       cv_of(search_.term_of(m.entry).name()));
+    };
+    auto best = std::min_element(members_.begin(), members_.end(),
+                                 [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+    if (best == members_.end()) return {};
     // Of two effects that differ only in the time constants of the set, the first of the catalogue.
-    for (const Member& m : members_)
-      if (best != nullptr && m.alone == best->alone &&
-          search_.entry(m.entry).term < search_.entry(best->entry).term)
-        best = &m;
-    return best == nullptr ? "" : search_.term_of(best->entry).name();
+    for (auto m = members_.begin(); m != members_.end(); ++m)
+      if (m->alone == best->alone && search_.entry(m->entry).term < search_.entry(best->entry).term)
+        best = m;
+    return search_.term_of(best->entry).name();
   }
 
   /// RMS of the cross-validation with the effect as the only addition, m.

@@ -137,18 +137,20 @@ void find_failure(const std::vector<double>& time, bool zero_kept, Prediction& p
     return 4 * many > end - begin;
   };
   // At least two windows: in one of 20 the limit is exceeded by chance.
-  std::pair<std::size_t, std::size_t> failing_part{0, 0};
   double least = holds(0, count) - failing;
+  std::size_t from = count, until = 0;
   for (std::size_t k = 0; k + 2 <= count; ++k)
     if (const double cost = holds(0, k) + static_cast<double>(count - k) * failing; cost < least)
-      least = cost, failing_part = {k * window, n}, p.fails_from = time[k * window];
-  if (p.fails_from) least -= failing;
+      least = cost, from = k;
+  if (from < count) least -= failing;
   for (std::size_t k = 2; k < count; ++k)
     if (const double cost = holds(k, count) + static_cast<double>(k) * failing; cost < least)
-      least = cost, failing_part = {0, k * window}, p.fails_until = time[k * window],
-      p.fails_from.reset();
-  if (!outside(failing_part.first, failing_part.second))
-    p.fails_from.reset(), p.fails_until.reset();
+      least = cost, until = k;
+  if (until > 0) {
+    if (outside(0, until * window)) p.fails_until = time[until * window];
+  } else if (from < count && outside(from * window, n)) {
+    p.fails_from = time[from * window];
+  }
 }
 
 /// The part with each channel related to its largest value in `seen`, as the parameters are.

@@ -208,6 +208,14 @@ TEST(FailedChannels, SpikesAreMissing) {
   EXPECT_EQ(part.channels_left[0].value, before[800] - 12.0);
   EXPECT_FALSE(part.channels_left[0].fails());
   EXPECT_EQ(part.table.channel("t1")->value.size(), before.size() - 4);
+  // Where the displacement moves as well, something happened.
+  Part splashed = thermometers(noise);
+  for (const std::size_t at : {400, 800}) {
+    splashed.table.channels[1].value[at] -= 8.0;
+    splashed.table.deviation[at] += 2e-6;
+  }
+  leave_failed(splashed);
+  EXPECT_TRUE(splashed.channels_left.empty());
 }
 
 }  // namespace
