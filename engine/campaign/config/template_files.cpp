@@ -66,10 +66,18 @@ std::string line_of(const std::string& name, const std::string& digest) {
   return name + " " + digest + "\n";
 }
 
-Expected<void> keep(Templates& templates, const std::string& name, std::string bytes,
+/// Of the program's own fonts, one has 4 MB and is rarely drawn with.
+Expected<SharedBytes> bytes_of(const fs::path& path, bool is_mapped) {
+  if (!is_mapped) return storage::read_file(path).map([](std::string b) { return SharedBytes(b); });
+  NONIO_TRY(auto file, storage::MappedFile::open(path));
+  const auto kept = std::make_shared<const storage::MappedFile>(std::move(file));
+  return SharedBytes(kept, kept->bytes());
+}
+
+Expected<void> keep(Templates& templates, const std::string& name, const SharedBytes& bytes,
                     const std::string& path) {
   if (!name.ends_with(".toml") || is_causes_file(name)) {
-    templates.files[name] = std::move(bytes);
+    templates.files[name] = bytes;
     return {};
   }
   NONIO_TRY(auto settings, parse_settings(bytes, path));
@@ -101,16 +109,18 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
   storage::Json carried = storage::Json::object();
   for (const auto& [name, path] : files) {
     const auto of_site = own.files.find(name);
-    NONIO_TRY(auto bytes, of_site == own.files.end() ? storage::read_file(path)
-                                                     : Expected<std::string>(of_site->second));
+    const bool is_installed = path == folders.front() / name;
+    NONIO_TRY(const auto bytes, of_site == own.files.end()
+                                    ? bytes_of(path, is_installed && !travels(name))
+                                    : Expected<SharedBytes>(of_site->second));
     const std::string sum = storage::sha256(bytes);
     all += line_of(name, sum);
     if (json != nullptr)
       carried[name] = !travels(name)            ? storage::Json{{"sha256", sum}}
-                      : name.ends_with(".toml") ? storage::Json{{"text", bytes}}
+                      : name.ends_with(".toml") ? storage::Json{{"text", std::string_view(bytes)}}
                                                 : storage::Json{{"hex", to_hex(bytes)}};
-    if (in_other_language(name, languages) && path == folders.front() / name) continue;
-    if (auto kept = keep(templates, name, std::move(bytes), path.string()); !kept)
+    if (in_other_language(name, languages) && is_installed) continue;
+    if (auto kept = keep(templates, name, bytes, path.string()); !kept)
       return fail(kept.error());
   }
   if (auto read = causes_in(templates))
@@ -145,7 +155,8 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
                  ? std::optional(file[key].get<std::string>())
                  : std::nullopt;
     };
-    std::string bytes, sum;
+    SharedBytes bytes;
+    std::string sum;
     if (const auto digest = of("sha256"); digest && !travels(name)) {
       const auto own = installed.files.find(name);
       if (own == installed.files.end() || storage::sha256(own->second) != *digest)
@@ -166,7 +177,7 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
                        ours["files"][name] == item.value();
     if (!known && travels(name)) out.strange.push_back(name);
     all += line_of(name, sum.empty() ? storage::sha256(bytes) : sum);
-    if (auto kept = keep(out.templates, name, std::move(bytes), name); !kept)
+    if (auto kept = keep(out.templates, name, bytes, name); !kept)
       return fail(kept.error());
   }
   if (ours.is_object() && ours.contains("files"))

@@ -81,7 +81,9 @@ void add_title(const Source& source, Blocks& blocks) {
   for (const std::string& name : {source.look.logo, source.look.mark})
     if (const auto file = source.in.templates.files.find(name);
         !name.empty() && file != source.in.templates.files.end())
-      by.push_back({Image{file->second, "templates/" + name, source.look.logo_height}, "logo"});
+      by.push_back({Image{std::string(std::string_view(file->second)), "templates/" + name,
+                          source.look.logo_height},
+                    "logo"});
   paragraph(by, l.name, "laboratory.name", Look::bold);
   paragraph(by, l.address + (l.country.empty() ? "" : " · " + l.country), "laboratory.address",
             Look::muted);

@@ -341,7 +341,7 @@ Document compose(const Source& source) {
   document.foot = document.title;
   if (const auto profile = source.in.templates.files.find(source.look.profile);
       profile != source.in.templates.files.end())
-    document.profile = profile->second;
+    document.profile = std::string_view(profile->second);
   document.page_of = source.words.get("title.page_of");
   if (issue.is_draft()) document.mark = source.words.get("draft.mark");
   for (const std::string& name : source.look.blocks)

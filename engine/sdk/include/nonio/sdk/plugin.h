@@ -348,7 +348,7 @@ class Registry {
   ~Registry() = default;
 };
 
-#define NONIO_SDK_VERSION 21
+#define NONIO_SDK_VERSION 22
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)

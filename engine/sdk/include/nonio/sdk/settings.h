@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -62,11 +64,29 @@ class Settings {
   }
 };
 
+/// Bytes that do not change, in memory or of a mapped file. Copies share them.
+class SharedBytes {
+ public:
+  SharedBytes(std::string bytes = {}) {
+    const auto kept = std::make_shared<const std::string>(std::move(bytes));
+    bytes_ = *kept, owner_ = kept;
+  }
+  SharedBytes(const char* bytes) : SharedBytes(std::string(bytes)) {}
+  SharedBytes(std::shared_ptr<const void> owner, std::string_view bytes)
+      : owner_(std::move(owner)), bytes_(bytes) {}
+
+  operator std::string_view() const { return bytes_; }
+
+ private:
+  std::shared_ptr<const void> owner_{};
+  std::string_view bytes_{};
+};
+
 /// The files of templates/: `*.toml` as settings under their path without the extension
 /// ("words/en"), all others (logo, fonts) as bytes under the whole path.
 struct Templates {
   std::map<std::string, Settings, std::less<>> tables;
-  std::map<std::string, std::string, std::less<>> files;
+  std::map<std::string, SharedBytes, std::less<>> files;
 };
 
 }  // namespace nonio
