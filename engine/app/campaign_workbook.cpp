@@ -29,7 +29,7 @@ constexpr const char* fixed_names[] = {"Summary", "Charts", "Points", "Curves", 
 /// Number of points per curve that Excel accepts in a chart.
 constexpr std::size_t most_chart_points = 32'000;
 
-Cell number(const Json& of, const char* key) {
+Cell number_cell(const Json& of, const char* key) {
   const auto found = of.find(key);
   if (found == of.end() || !found->is_number()) return {};
   return found->get<double>();
@@ -144,13 +144,14 @@ class Composer {
                  std::string("Tolerance"), std::string("Decision"), std::string("Repeatability")});
     for (const Json& a : results_.at("analyses"))
       for (const auto& [name, v] : a.at("values").items())
-        sheet.rows.push_back({text(a, "measurement"), analysis_name(a), name, number(v, "value"),
-                              number(v, "U"), text(v, "unit"), number(v, "k"),
-                              number(v, "tolerance"), decision(v), number(v, "repeatability")});
+        sheet.rows.push_back({text(a, "measurement"), analysis_name(a), name,
+                              number_cell(v, "value"), number_cell(v, "U"), text(v, "unit"),
+                              number_cell(v, "k"), number_cell(v, "tolerance"), decision(v),
+                              number_cell(v, "repeatability")});
     for (const Json& c : results_.value("conformity", Json::array()))
       if (!has_value(c))
         sheet.rows.push_back({text(c, "measurement"), text(c, "plugin"), text(c, "name"), Cell(),
-                              Cell(), text(c, "unit"), Cell(), number(c, "tolerance"),
+                              Cell(), text(c, "unit"), Cell(), number_cell(c, "tolerance"),
                               decision(c)});
   }
 
@@ -290,13 +291,15 @@ class Composer {
       const std::size_t first = sheet.rows.size();
       for (const Json& point : analysis.at(rows)) {
         Row row;
-        for (const auto& [name, unit] : columns.items()) row.push_back(number(point, name.c_str()));
+        for (const auto& [name, unit] : columns.items())
+          row.push_back(number_cell(point, name.c_str()));
         sheet.rows.push_back(std::move(row));
       }
       if (const Json U = analysis.value("point_U", Json::object());
           !U.empty() && rows == std::string("points")) {
         Row row;
-        for (const auto& [name, unit] : columns.items()) row.push_back(number(U, name.c_str()));
+        for (const auto& [name, unit] : columns.items())
+          row.push_back(number_cell(U, name.c_str()));
         if (std::holds_alternative<std::monostate>(row.front()))
           row.front() = std::string("U (k = 2), at most");
         sheet.rows.push_back(std::move(row));
@@ -374,7 +377,7 @@ class Composer {
       for (std::size_t i = 0; i < count; ++i)
         sheet.rows.push_back({text(analysis, "measurement"), analysis_name(analysis), name,
                               text(s, "over"), at("position", i), text(s, "position_unit"),
-                              at("value", i), at("U", i), text(s, "unit"), number(s, "k"),
+                              at("value", i), at("U", i), text(s, "unit"), number_cell(s, "k"),
                               at("repeatability", i)});
       if (count < 2 || count > most_chart_points) continue;
       add_curve(charts, title_of(analysis), name, s, {first, first + count - 1});
@@ -400,7 +403,7 @@ class Composer {
     const Json& results = budget.at("results");
     if (!sheet.rows.empty()) sheet.rows.emplace_back();
     add_heading(sheet, {title_of(analysis), std::string("longest reading (mm)"),
-                        number(budget, "length_mm")});
+                        number_cell(budget, "length_mm")});
     Row head{std::string("Contribution"),
              std::string("u of a reading"),
              std::string("Unit"),
@@ -417,14 +420,15 @@ class Composer {
       const std::string id = c.at("id"),
                         named = words(shown_.templates, shown_.language, "budget.item." + id);
       Row row{named.empty() ? id : named,
-              number(c, "u"),
+              number_cell(c, "u"),
               text(c, "unit"),
               std::string(c.value("with_length", false) ? "yes" : "no"),
               text(c, "distribution"),
               text(c, "correlation"),
-              number(c, "dof"),
+              number_cell(c, "dof"),
               text(c, "source")};
-      for (const auto& [name, r] : results.items()) row.push_back(number(r.at("u"), id.c_str()));
+      for (const auto& [name, r] : results.items())
+        row.push_back(number_cell(r.at("u"), id.c_str()));
       sheet.rows.push_back(std::move(row));
     }
     for (const auto& [name, key] : {std::pair{"Coverage factor k", "k"},
@@ -433,7 +437,7 @@ class Composer {
       Row row(fixed);
       row.front() = std::string(name);
       for (const auto& [result, r] : results.items())
-        row.push_back(number(
+        row.push_back(number_cell(
             key == std::string("U") ? analysis.at("values").value(result, Json::object()) : r,
             key));
       sheet.rows.push_back(std::move(row));

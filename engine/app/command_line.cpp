@@ -80,7 +80,7 @@ CLI::Validator calendar_day() {
           ""};
 }
 
-CLI::Validator within(double least, double most) {
+CLI::Validator between(double least, double most) {
   return {[least, most](const std::string& found) {
             double value = 0.0;
             const char* const end = found.data() + found.size();
@@ -100,7 +100,7 @@ void check(CLI::Option& option, const Argument& a) {
   if (a.exists) option.check(existing(a.takes));
   if (a.takes == Argument::Takes::day) option.check(calendar_day());
   if (!a.choices.empty()) option.check(member_of(a.choices));
-  if (a.range) option.check(within(a.range->first, a.range->second));
+  if (a.range) option.check(between(a.range->first, a.range->second));
 }
 
 Words split(const std::string& text) {

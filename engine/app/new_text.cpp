@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* example_mark = "EXAMPLE, NOT MEASURED";
 
-std::string quoted(const std::string& text) {
+std::string toml_string(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -31,7 +31,7 @@ std::string quoted(const std::string& text) {
 std::string text_line(const std::string& key, const std::string& text, const std::string& example,
                       const std::string& comment = {}) {
   std::string line =
-      (text.empty() ? "# " : "") + key + " = " + quoted(text.empty() ? example : text);
+      (text.empty() ? "# " : "") + key + " = " + toml_string(text.empty() ? example : text);
   if (!comment.empty()) {
     line.resize(std::max<std::size_t>(line.size() + 1, 44), ' ');
     line += "# " + comment;
@@ -170,7 +170,7 @@ bool set_offered(std::string& text, const std::string& key, const std::string& v
       table = plain.substr(begin, plain.find(']') - begin);
     } else if (table == wanted && plain.starts_with(name)) {
       const std::size_t comment = plain.find(" # ", name.size());
-      line = name + (plain[name.size()] == '"' ? quoted(value) : value) +
+      line = name + (plain[name.size()] == '"' ? toml_string(value) : value) +
              (comment == std::string::npos ? "\n" : " " + plain.substr(comment));
       if (out.compare(header, 2, "# ") == 0) out.erase(header, 2);
       found = true;
@@ -283,10 +283,11 @@ std::string campaign_text(const NewCampaign& c) {
   for (const NewAxis& a : c.axes) text += axis_text(a);
   text += instrument_text(c);
   for (const NewAxis& a : c.axes) {
-    text += "\n[[measurement]]\nid = " + quoted(a.axis.name) +
-            "\nkind = \"axis\"\naxis = " + quoted(a.axis.name) + "\nfile = " + quoted(a.file);
+    text += "\n[[measurement]]\nid = " + toml_string(a.axis.name) +
+            "\nkind = \"axis\"\naxis = " + toml_string(a.axis.name) +
+            "\nfile = " + toml_string(a.file);
     text += a.example() ? "  # EXAMPLE readings\n" : "\n";
-    if (!c.reader.empty() && !a.example()) text += "reader = " + quoted(c.reader) + "\n";
+    if (!c.reader.empty() && !a.example()) text += "reader = " + toml_string(c.reader) + "\n";
     text += test_text(a);
   }
   text +=
@@ -307,7 +308,7 @@ std::string campaign_text(const NewCampaign& c) {
       "# edition = 2014\n";
   if (c.reader.empty()) return text;
   text += "\n# What the columns of the files are.\n[options." + c.reader + "]\ncolumns = [\n";
-  for (const std::string& column : c.columns) text += "  " + quoted(column) + ",\n";
+  for (const std::string& column : c.columns) text += "  " + toml_string(column) + ",\n";
   return text + "]\n";
 }
 

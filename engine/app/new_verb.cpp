@@ -66,7 +66,7 @@ fs::path holder_of(const std::string& id, const fs::path& site) {
   return {};
 }
 
-std::vector<std::string> split(const std::string& text) {
+std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words;
   std::string word;
   for (const char c : text + " ")
@@ -230,7 +230,7 @@ Expected<std::vector<NewAxis>> axes_with_files(const NewWish& wish, Questions& a
     std::string typed;
     if (auto done = ask.text(ask.say("new.ask.axes"), typed, "X=0:500"); !done)
       return fail(done.error());
-    texts = split(typed);
+    texts = words_of(typed);
   }
   auto axes = axes_of(texts);
   if (!axes) return fail(axes.error());

@@ -29,7 +29,7 @@ namespace {
 
 namespace dom = simdjson::dom;
 
-std::string quoted(const std::string& text) {
+std::string label_value(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -45,8 +45,8 @@ class Metrics {
     out_ += "# TYPE " + name + " gauge\n# HELP " + name + " " + help + "\n";
   }
   void value(const std::string& number, const std::string& label = "", const std::string& of = "") {
-    out_ +=
-        name_ + (label.empty() ? "" : "{" + label + "=" + quoted(of) + "}") + " " + number + "\n";
+    out_ += name_ + (label.empty() ? "" : "{" + label + "=" + label_value(of) + "}") + " " +
+            number + "\n";
   }
   std::string made() { return out_ + "# EOF\n"; }
 
