@@ -128,6 +128,22 @@ class JointSearch {
     return choices;
   }
 
+  /// The choices with all knots of their curves, except that of effect `i`. What a curve with few
+  /// knots leaves is the same in all campaigns and must not look like another effect, or, where
+  /// campaigns measure other parts of the travel, like a difference.
+  Choices with_all_knots(Choices choices, std::size_t except) const {
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      if (i == except || !r_.blocks[choices[i].block].is->curve) continue;
+      const Choices before = choices;
+      for (std::size_t b = 0; b < r_.blocks.size(); ++b)
+        if (r_.blocks[b].effect == r_.blocks[choices[i].block].effect &&
+            r_.blocks[b].count > r_.blocks[choices[i].block].count)
+          choices[i].block = b;
+      if (!system_.solve(choices).sound) choices = before;
+    }
+    return choices;
+  }
+
   double criterion(const Choices& choices) const {
     const auto s = system_.solve(choices);
     return s.sound ? s.criterion() : std::numeric_limits<double>::infinity();
@@ -188,16 +204,21 @@ class JointSearch {
 
   /// p of the differences between campaigns beyond those that the choice allows.
   double p_same(std::size_t i) const {
-    Choices own = choices_;
-    own[i].holds = Holds::own;
-    const auto a = system_.solve(choices_), b = system_.solve(own);
+    const Choices same = with_all_knots(choices_, choices_.size());
+    Choices own = same;
+    if (same[i].block == choices_[i].block)
+      own[i].holds = Holds::own;
+    else
+      own.push_back({choices_[i].block, Holds::own});
+    const auto a = system_.solve(same), b = system_.solve(own);
     const auto q = static_cast<double>(b.parameters - a.parameters);
     if (!a.sound || !b.sound || !(q >= 1.0)) return 1.0;
     return math::f_upper((a.squares - b.squares) / q, q, dof_);
   }
 
   /// F-test against the noise of the repeats, corrected for the dates of a change only.
-  double p_of(const Choices& choices, std::size_t i) const {
+  double p_of(const Choices& chosen, std::size_t i) const {
+    const Choices choices = with_all_knots(chosen, i);
     const auto all = system_.solve(choices), rest = system_.solve(without(choices, i));
     const JointBlock& block = r_.blocks[choices[i].block];
     const auto q = static_cast<double>(all.parameters - rest.parameters + block.searched);

@@ -109,7 +109,7 @@ class Isolation(NightTest):
     @unittest.skipIf("NONIO_TEST_NO_MEMORY_LIMIT" in os.environ, "nothing stops the parser there")
     def test_a_manifest_that_brings_its_parser_down(self):
         (self.site / "site.toml").write_text("[limits]\nmemory_MB = 64\n")
-        keys = "".join(f"k{i:x}=0\n" for i in range(116_000))  # just below 1 MB, the largest that is read
+        keys = "".join(f"{i:x}.a=0\n" for i in range(98_000))  # just below 1 MB, the largest that is read
         self.campaign("large", text=manifest("large", extra="[options.iso230-2]\n" + keys))
         for name in "az":
             self.campaign(name)

@@ -11,13 +11,12 @@
 namespace nonio::fixtures {
 
 inline std::string inflated(const std::string& bytes) {
-  std::string out(4 << 20, '\0');
-  uLongf size = out.size();
-  if (uncompress(reinterpret_cast<Bytef*>(out.data()), &size,
+  static std::vector<char> space(4 << 20);  // made once: to fill it takes longer than to inflate
+  uLongf size = space.size();
+  if (uncompress(reinterpret_cast<Bytef*>(space.data()), &size,
                  reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()) != Z_OK)
     return {};
-  out.resize(size);
-  return out;
+  return {space.data(), size};
 }
 
 inline std::vector<std::string> streams(const std::string& pdf) {
