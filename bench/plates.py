@@ -28,17 +28,21 @@ def errors(story, size):
     }[story]
 
 
-def plate(path, holes, error, noise, turned, rng, temperature=0.0):
-    """One plate, of which the measuring machine does not know how it lay: CSV of nominal and measured places."""
-    turn, shift = rng.gauss(0, 100e-6), (rng.gauss(0, 50), rng.gauss(0, 50))
+def plate(path, holes, error, noise, turned, rng, temperature=0.0, turn=0.0):
+    """One plate, of which the measuring machine does not know how it lay: CSV of nominal and measured places. `turn`: of
+    its frame, rad, besides what the measuring machine does not know."""
+    turn += rng.gauss(0, 100e-6)
+    shift = (rng.gauss(0, 50), rng.gauss(0, 50))
     size = 11.5e-6 * temperature
     lines = ["nominal_x_mm,nominal_y_mm,measured_x_mm,measured_y_mm"]
     c, s = math.cos(turned), math.sin(turned)
     for x, y in holes:
         e, f = error(c * x - s * y, s * x + c * y)  # in the machine
         dx, dy = c * e + s * f, -s * e + c * f  # in the plate
-        dx += shift[0] - 1e3 * turn * y + 1e3 * size * x + rng.gauss(0, noise)
-        dy += shift[1] + 1e3 * turn * x + 1e3 * size * y + rng.gauss(0, noise)
+        dx += shift[0] + 1e3 * size * x + rng.gauss(0, noise)
+        dy += shift[1] + 1e3 * size * y + rng.gauss(0, noise)
+        dx -= 1e3 * (math.sin(turn) * y + 2 * math.sin(turn / 2) ** 2 * x)
+        dy += 1e3 * (math.sin(turn) * x - 2 * math.sin(turn / 2) ** 2 * y)
         lines.append(f"{x:.3f},{y:.3f},{x + dx * 1e-3:.6f},{y + dy * 1e-3:.6f}")
     path.write_text("\n".join(lines) + "\n")
 

@@ -139,12 +139,13 @@ std::string effects_of(const ModelFit& fit) {
 }
 
 /// Excludes searched parameters, parameters of curves, because their knots differ between
-/// campaigns, and parameters in m/m, which the quantity `scale` includes.
+/// campaigns, parameters in m/m, which the quantity `scale` includes, and how a part or an
+/// instrument was set up.
 bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
   const auto effect = std::find_if(fit.effects.begin(), fit.effects.end(),
                                    [&](const ModelFit::Effect& e) { return e.name == p.effect; });
   return !p.searched && p.quantity != Quantity::deviation_per_length &&
-         (effect == fit.effects.end() || !effect->curve);
+         (effect == fit.effects.end() || (!effect->curve && !effect->is_set_up));
 }
 
 /// Model of a parameter. That of a source is the effect of its largest value, which must be equal.

@@ -34,18 +34,24 @@ bool is_curve(const std::vector<model::Parameter>& group) {
   return std::count_if(group.begin(), group.end(), [](const auto& p) { return !p.shape; }) > 3;
 }
 
+/// `shapes`: also the values that were searched, such as a time constant.
 std::string value_text(const std::vector<model::Parameter>& group, double size, Quantity deviation,
-                       const config::TerminalWords& say) {
+                       const config::TerminalWords& say, bool shapes = false) {
   std::string out;
+  const auto is_shown = [&](const model::Parameter& p) {
+    return !p.shape || (shapes && p.quantity != Quantity::count);
+  };
+  const bool several = std::count_if(group.begin(), group.end(), is_shown) > 1;
   if (is_curve(group))
     return "RMS " + say.number(short_text(printed(size, deviation))) + " " +
            std::string(unit_of(deviation).symbol);
   for (const model::Parameter& p : group) {
-    if (p.shape) continue;
+    if (!is_shown(p)) continue;
     const std::string unit(unit_of(p.quantity).symbol);
-    out += (out.empty() ? "" : "; ") + (group.size() > 1 ? p.name + " " : std::string()) +
-           say.number(short_text(printed(p.value, p.quantity))) + (unit.empty() ? "" : " " + unit) +
-           ", U = " + say.number(short_text(2.0 * printed(p.u, p.quantity), 2));
+    out += (out.empty() ? "" : "; ") + (several ? p.name + " " : std::string()) +
+           say.number(short_text(printed(p.value, p.quantity))) + (unit.empty() ? "" : " " + unit);
+    if (std::isfinite(p.u))
+      out += ", U = " + say.number(short_text(2.0 * printed(p.u, p.quantity), 2));
   }
   return out;
 }
@@ -69,7 +75,7 @@ bool is_absent(const std::vector<model::Parameter>& group) {
 std::pair<std::size_t, std::size_t> extremes(const model::JointEffect& e) {
   std::pair<std::size_t, std::size_t> out{e.groups.size(), e.groups.size()};
   for (std::size_t g = 0; g < e.groups.size(); ++g) {
-    if (e.groups[g].empty()) continue;
+    if (e.groups[g].empty() || e.groups[g].front().shape) continue;
     const double value = e.groups[g].front().value;
     if (out.first == e.groups.size() || value < e.groups[out.first].front().value) out.first = g;
     if (out.second == e.groups.size() || value > e.groups[out.second].front().value) out.second = g;
@@ -93,8 +99,8 @@ std::string sentence_of(const model::JointEffect& e, const Together& t,
                         const config::TerminalWords& say) {
   const Quantity q = t.deviation();
   if (e.holds == Holds::shared)
-    return say("joint.shared",
-               {{"effect", e.effect}, {"value", value_text(e.groups.front(), e.size, q, say)}});
+    return say("joint.shared", {{"effect", e.effect},
+                                {"value", value_text(e.groups.front(), e.size, q, say, true)}});
   if (e.holds == Holds::changed) {
     if (is_curve(e.groups[0]))
       return say("joint.changed-curve", {{"effect", e.effect},
@@ -157,7 +163,8 @@ std::string sentence_of(const Together& t, const config::TerminalWords& say) {
   const Quantity q = t.deviation();
   constexpr int usual = 3, most = 5;
   const auto text_of = [&](double v, int digits) { return short_text(printed(v, q), digits); };
-  const int digits = text_of(x.rms, usual) == text_of(x.rms_after, usual) ? most : usual;
+  const bool falls = x.verdict == model::Verdict::Kind::missing;
+  const int digits = falls && text_of(x.rms, usual) == text_of(x.rms_after, usual) ? most : usual;
   const auto text = [&](double v) {
     return say.number(text_of(v, digits)) + " " + std::string(unit_of(q).symbol);
   };
@@ -169,12 +176,17 @@ std::string sentence_of(const Together& t, const config::TerminalWords& say) {
                                            {"before", text(x.rms)},
                                            {"after", text(x.rms_after)},
                                            {"floor", text(x.noise)}};
-  std::string out = say(x.verdict == model::Verdict::Kind::missing   ? "joint.missing"
+  if (x.single) {
+    config::TerminalWords::Parts of_one = parts;
+    of_one.emplace_back("campaign", t.campaigns[x.single->campaign]);
+    of_one.emplace_back("effect", x.single->effect);
+    return say("joint.single", of_one);
+  }
+  std::string out = say(falls                                        ? "joint.missing"
                         : x.verdict == model::Verdict::Kind::unknown ? "joint.unknown"
                                                                      : "joint.nothing",
                         parts);
-  if (x.verdict == model::Verdict::Kind::missing && !x.explains_all)
-    out += " " + say("joint.more", parts);
+  if (falls && !x.explains_all) out += " " + say("joint.more", parts);
   return out;
 }
 
@@ -261,6 +273,10 @@ Json part_of_json(const Together& t, const ModelWords& words) {
   verdict["differs"] = std::move(differs);
   verdict["explains_all"] = x.explains_all;
   verdict["p_left"] = x.p_left;
+  if (x.single)
+    verdict["single"] = {{"campaign", t.campaigns[x.single->campaign]},
+                         {"effect", x.single->effect},
+                         {"p", x.single->p}};
   verdict["says"] = sentence_of(t, say);
   json["effects"] = std::move(effects);
   json["plans"] = Json::array();

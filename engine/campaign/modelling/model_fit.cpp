@@ -159,7 +159,7 @@ void put_fit(ModelFit& out, const PartModel& part, const model::Comparison& c) {
   put_residuals(out, c);
   for (std::size_t t = 0; t < fit.terms.size(); ++t)
     out.effects.push_back({fit.terms[t].name(), fit.terms[t].effect->compensable, fit.part[t],
-                           curve_of(part, fit, t)});
+                           curve_of(part, fit, t), fit.terms[t].effect->is_nuisance});
   for (const model::Parameter& p : fit.parameters)
     out.parameters.push_back({p.effect, p.name, p.value,
                               std::isfinite(p.u) ? std::optional(p.u) : std::nullopt, p.quantity,

@@ -88,6 +88,7 @@ storage::Json predict_json(const std::vector<Predicted>& all, const Campaign& se
       part["holds_until_s"] = nullptr;
     if (p.fails_until) storage::put(part, "holds_from", *p.fails_until, Quantity::time);
     part["outside_range"] = p.outside;
+    if (p.left_out > 0) part["left_out"] = p.left_out;
     std::string says = words.prediction(p, one.unseen);
     for (const std::string& said : words.recordings(one.unseen, {})) says += " " + said;
     part["says"] = std::move(says);

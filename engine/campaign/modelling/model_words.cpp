@@ -48,7 +48,10 @@ std::string ModelWords::prediction(const model::Prediction& p, const PartModel& 
   if (p.fails_until)
     text += " " + says("prediction.fails-until", {{"until", *p.fails_until, Quantity::time}}, {});
   if (u > p.sd) text += " " + says("prediction.undetermined", {}, {});
-  if (p.outside)
+  if (p.left_out > 0)
+    text += " " + says("prediction.left-out",
+                       {{"count", static_cast<double>(p.left_out), Quantity::count}}, {});
+  else if (p.outside)
     text += " " + says(part.part.kind == model::Part::Kind::course ? "prediction.outside"
                                                                    : "prediction.outside-places",
                        {}, {});

@@ -120,34 +120,57 @@ Products products_of(const Repeats& r, const Saturated& s, const std::vector<dou
   return out;
 }
 
-/// Ratio of the sums of Products, as a function of the correlation, interpolated on a grid.
-class ExpectedRatio {
+/// Ratio of the sums of Products, and the sum of all squares, as functions of the correlation,
+/// interpolated on a grid.
+class ExpectedProducts {
  public:
-  explicit ExpectedRatio(const AlikePasses& passes) {
+  explicit ExpectedProducts(const AlikePasses& passes) {
     for (int k = 0; k <= steps; ++k) {
       const Moments m = passes(step * k);
       ratio_.push_back(m.lagged / m.trace);
+      trace_.push_back(m.trace);
     }
   }
-  double operator()(double rho) const {
-    const double at = std::min(rho / step, static_cast<double>(steps) - 1e-9);
-    const auto k = static_cast<std::size_t>(at);
-    return ratio_[k] + (at - static_cast<double>(k)) * (ratio_[k + 1] - ratio_[k]);
-  }
+  double ratio(double rho) const { return at(ratio_, rho); }
+  double trace(double rho) const { return at(trace_, rho); }
 
  private:
   static constexpr int steps = 19;
   static constexpr double step = 0.05;
-  std::vector<double> ratio_;
+
+  static double at(const std::vector<double>& grid, double rho) {
+    const double place = std::min(rho / step, static_cast<double>(steps) - 1e-9);
+    const auto k = static_cast<std::size_t>(place);
+    return grid[k] + (place - static_cast<double>(k)) * (grid[k + 1] - grid[k]);
+  }
+
+  std::vector<double> ratio_, trace_;
 };
 
+/// Variance of repeated readings including the terms of their passes, over the variance without.
+double scatter_with_passes(const Repeats& r, const Saturated& s, const std::vector<double>& y,
+                           const std::vector<double>& weight) {
+  std::vector<double> sum(r.cells, 0.0), weights(r.cells, 0.0);
+  for (std::size_t i = 0; i < y.size(); ++i)
+    sum[r.cell[i]] += weight[i] * y[i], weights[r.cell[i]] += weight[i];
+  double squares = 0.0, dof = 0.0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    if (!(weight[i] > 0.0)) continue;
+    const double e = y[i] - sum[r.cell[i]] / weights[r.cell[i]];
+    squares += weight[i] * e * e, dof += 1.0 - weight[i] / weights[r.cell[i]];
+  }
+  return squares / dof / (s.squares / s.dof);
+}
+
 /// The correlation is used if it exceeds `least_seen` standard deviations, and is then reduced
-/// towards 0 by a normal prior with standard deviation `usual`. With fewer than 8 degrees of
+/// towards 0 by a normal prior with standard deviation `usual`. In short passes it is hard to tell
+/// from chance, but strongly correlated noise would make their offsets differ, too: it cannot be
+/// larger than `most` times the scatter of the repeats with these. With fewer than 8 degrees of
 /// freedom, the correlation is not known.
-void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<double>& weight,
-                     Noise& noise) {
+void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<double>& y,
+                     const std::vector<double>& weight, Noise& noise) {
   // docs/dev/constants.md, M25.
-  constexpr double usual = 0.8, least_seen = 1.5, fine = 0.01;
+  constexpr double usual = 0.8, least_seen = 1.5, most = 2.0, fine = 0.01;
   noise.measured = not_measured;
   if (!(s.dof >= least_dof) || !(s.squares > 0.0)) return;
   const Products found = products_of(r, s, weight);
@@ -166,13 +189,15 @@ void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<dou
     noise.measured = std::clamp(z * sd / slope, -most_neighbours, most_neighbours);
     return;
   }
-  const ExpectedRatio expected(passes);
+  const ExpectedProducts expected(passes);
+  const double largest = most * scatter_with_passes(r, s, y, weight);
   double least = std::numeric_limits<double>::infinity(), nearest = least;
   for (double rho = 0.0; rho <= most_neighbours; rho += fine) {
-    const double off = (ratio - expected(rho)) / sd;
+    const double off = (ratio - expected.ratio(rho)) / sd;
     if (std::fabs(off) < nearest) nearest = std::fabs(off), noise.measured = rho;
     const double value = off * off + rho * rho / (usual * usual);
-    if (value < least) least = value, noise.neighbours = noise.in_repeats = rho;
+    const bool is_possible = none.trace <= largest * expected.trace(rho);
+    if (value < least && (is_possible || rho == 0.0)) least = value, noise.neighbours = noise.in_repeats = rho;
   }
   noise.u_neighbours = noise.measured / z;
 }
@@ -183,23 +208,21 @@ struct TargetScatter {
 };
 
 TargetScatter scatter_of(const Part& part, const Repeats& repeats, const Saturated& s,
-                         const std::vector<double>& weight, double dof) {
+                         const std::vector<double>& weight, double independent) {
   std::vector<double> in_cell(repeats.cells, 0.0);
   for (std::size_t i = 0; i < weight.size(); ++i)
     if (weight[i] > 0.0) in_cell[repeats.cell[i]] += 1.0;
   std::map<double, std::pair<double, double>> of;
-  double repeated = 0.0;
   for (std::size_t i = 0; i < weight.size(); ++i) {
-    const double n = in_cell[repeats.cell[i]];
-    if (!(weight[i] > 0.0) || !(n > 1.0)) continue;
-    auto& [squares, more] = of[part.table.axes.front().position[i]];
-    squares += s.e[i] * s.e[i], more += 1.0 - 1.0 / n, repeated += 1.0 - 1.0 / n;
+    if (!(weight[i] > 0.0) || !(in_cell[repeats.cell[i]] > 1.0)) continue;
+    auto& [squares, dof] = of[part.table.axes.front().position[i]];
+    squares += s.e[i] * s.e[i], dof += independent * s.share[i];
   }
   TargetScatter out;
   for (const auto& [at, sum] : of) {
     out.at.push_back(at);
     out.squares.push_back(sum.first);
-    out.dof.push_back(sum.second * dof / repeated);
+    out.dof.push_back(sum.second);
   }
   return out;
 }
@@ -224,7 +247,7 @@ void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
   // squares of correlated neighbors are correlated, too
   const double independent = (1.0 - rho2) / (1.0 + rho2);
   if (part.kind != Part::Kind::axis || !(s.dof >= 2.0 * least_dof)) return;
-  const TargetScatter scatter = scatter_of(part, repeats, s, weight, s.dof * independent);
+  const TargetScatter scatter = scatter_of(part, repeats, s, weight, independent);
   const std::size_t targets = scatter.at.size();
   if (targets < 2 * fewest || targets > most_targets) return;
   std::vector<double> squares(targets + 1, 0.0), dof(targets + 1, 0.0);
@@ -240,6 +263,7 @@ void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
       const double in = squares[b] - squares[a], f = dof[b] - dof[a];
       const double out = all - in, g = n - f;
       if (targets - (b - a) < fewest || !(in > 0.0) || !(out > 0.0)) continue;
+      if (!(f >= least_dof && g >= least_dof)) continue;
       // Bartlett's test of two variances, with his correction for few degrees of freedom.
       const double gain = (n * std::log(all / n) - f * std::log(in / f) - g * std::log(out / g)) /
                           (1.0 + (1.0 / f + 1.0 / g - 1.0 / n) / 3.0);
@@ -257,18 +281,19 @@ void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
   if (noise.stretch) spread_out(part, noise);
 }
 
-/// `s`: residuals of a fit that is weighted with the known range. Nothing changes if all residuals
-/// inside or all residuals outside are 0.
+/// `s`: residuals of a fit that is weighted with the known range. Nothing changes if the readings
+/// inside or outside have few degrees of freedom left: the terms of the passes would follow them
+/// closer with every round, until they seem to have no scatter at all.
 void measure_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
                      const std::vector<double>& weight, Noise& noise) {
-  const TargetScatter scatter = scatter_of(part, repeats, s, weight, s.dof);
+  const TargetScatter scatter = scatter_of(part, repeats, s, weight, 1.0);
   double in = 0.0, f = 0.0, out = 0.0, g = 0.0;
   for (std::size_t k = 0; k < scatter.at.size(); ++k) {
     const bool inside = scatter.at[k] >= noise.stretch->from && scatter.at[k] <= noise.stretch->to;
     (inside ? in : out) += scatter.squares[k];
     (inside ? f : g) += scatter.dof[k];
   }
-  if (!(in > 0.0) || !(out > 0.0)) return;
+  if (!(in > 0.0) || !(out > 0.0) || !(f >= least_dof && g >= least_dof)) return;
   const double mean = std::sqrt((in + out) / (f + g));
   noise.stretch->inside = std::sqrt(in / f) / mean;
   noise.stretch->outside = std::sqrt(out / g) / mean;
@@ -307,7 +332,7 @@ Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<doubl
   noise.pass = repeats.pass;
   noise.digit = digit_of(part.table);
   Saturated left = saturate(repeats, part.table.deviation, weight);
-  find_neighbours(repeats, left, weight, noise);
+  find_neighbours(repeats, left, part.table.deviation, weight, noise);
   find_stretch(part, repeats, left, weight, noise);
   if (!noise.stretch) return noise;
   std::vector<double> with = with_scatter(weight, noise);
@@ -319,7 +344,7 @@ Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<doubl
   }
   left = saturate(repeats, part.table.deviation, with);
   noise.neighbours = noise.in_repeats = noise.u_neighbours = 0.0;
-  find_neighbours(repeats, left, with, noise);
+  find_neighbours(repeats, left, part.table.deviation, with, noise);
   return noise;
 }
 

@@ -180,12 +180,26 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
   out.dof = used - cells_used;
   // The part that all passes of a side share is already contained in the cell means.
   std::vector<Index> common(r.sides, 0);
+  double of_passes = 0.0, of_sides = 0.0;
   for (std::size_t p = 0; p < r.passes; ++p) {
     const Index columns = shared[p].plain.cols();
-    out.dof -= static_cast<double>(columns);
+    of_passes += static_cast<double>(columns);
     common[r.side[p]] = std::max(common[r.side[p]], columns);
   }
-  for (const Index k : common) out.dof += static_cast<double>(k);
+  for (const Index k : common) of_sides += static_cast<double>(k);
+  out.dof -= of_passes - of_sides;
+  out.share.assign(n, 0.0);
+  for (std::size_t c = 0; c < r.cells; ++c) {
+    double weights = 0.0;
+    for (const auto i : cells[c]) weights += w(i);
+    for (const auto i : cells[c])
+      if (w(i) > 0.0) out.share[i] = 1.0 - w(i) / weights;
+  }
+  for (std::size_t p = 0; p < r.passes; ++p)
+    for (Index i = 0; i < shared[p].plain.rows(); ++i)
+      if (double& share = out.share[passes[p][static_cast<std::size_t>(i)]]; share > 0.0)
+        share -=
+            (1.0 - of_sides / of_passes) * shared[p].plain.row(i).dot(shared[p].weighted.row(i));
   return out;
 }
 

@@ -26,6 +26,7 @@ struct Repeats {
 struct Saturated {
   std::vector<double> e;  ///< residual of each reading, including those of weight 0
   double squares = 0.0, dof = 0.0;
+  std::vector<double> share;  ///< of each reading in `dof`: what its cell and its pass leave of it
 };
 Saturated saturate(const Repeats&, const std::vector<double>& y, const std::vector<double>& weight);
 

@@ -128,18 +128,35 @@ class JointSearch {
     return choices;
   }
 
-  /// The choices with all knots of their curves, except that of effect `i`. What a curve with few
+  /// Blocks of this curve with more knots that all of its members determine, most first, and the
+  /// block itself. What a curve with few
   /// knots leaves is the same in all campaigns and must not look like another effect, or, where
   /// campaigns measure other parts of the travel, like a difference.
+  std::vector<std::size_t> finer(std::size_t block) const {
+    std::vector<std::size_t> out{block};
+    const auto lack = [&](std::size_t b) {
+      return std::any_of(r_.members.begin(), r_.members.end(), [&](const MemberReadings& m) {
+        return m.first[block] >= 0 && m.first[b] < 0;
+      });
+    };
+    for (std::size_t b = 0; b < r_.blocks.size() && r_.blocks[block].is->curve; ++b)
+      if (r_.blocks[b].effect == r_.blocks[block].effect &&
+          r_.blocks[b].count > r_.blocks[block].count && !lack(b))
+        out.push_back(b);
+    std::stable_sort(out.begin(), out.end(), [&](std::size_t one, std::size_t other) {
+      return r_.blocks[one].count > r_.blocks[other].count;
+    });
+    return out;
+  }
+
+  /// The choices with as many knots of curves as the readings determine, except that of effect `i`.
   Choices with_all_knots(Choices choices, std::size_t except) const {
     for (std::size_t i = 0; i < choices.size(); ++i) {
-      if (i == except || !r_.blocks[choices[i].block].is->curve) continue;
-      const Choices before = choices;
-      for (std::size_t b = 0; b < r_.blocks.size(); ++b)
-        if (r_.blocks[b].effect == r_.blocks[choices[i].block].effect &&
-            r_.blocks[b].count > r_.blocks[choices[i].block].count)
-          choices[i].block = b;
-      if (!system_.solve(choices).sound) choices = before;
+      if (i == except) continue;
+      for (const std::size_t b : finer(choices[i].block)) {
+        choices[i].block = b;
+        if (system_.solve(choices).sound) break;
+      }
     }
     return choices;
   }
@@ -204,16 +221,17 @@ class JointSearch {
 
   /// p of the differences between campaigns beyond those that the choice allows.
   double p_same(std::size_t i) const {
-    const Choices same = with_all_knots(choices_, choices_.size());
-    Choices own = same;
-    if (same[i].block == choices_[i].block)
+    Choices same = with_all_knots(choices_, i);
+    for (const std::size_t b : finer(choices_[i].block)) {
+      same[i].block = b;
+      Choices own = same;
       own[i].holds = Holds::own;
-    else
-      own.push_back({choices_[i].block, Holds::own});
-    const auto a = system_.solve(same), b = system_.solve(own);
-    const auto q = static_cast<double>(b.parameters - a.parameters);
-    if (!a.sound || !b.sound || !(q >= 1.0)) return 1.0;
-    return math::f_upper((a.squares - b.squares) / q, q, dof_);
+      const auto one = system_.solve(same), each = system_.solve(own);
+      if (!one.sound || !each.sound) continue;
+      const auto q = static_cast<double>(each.parameters - one.parameters);
+      return q >= 1.0 ? math::f_upper((one.squares - each.squares) / q, q, dof_) : 1.0;
+    }
+    return 1.0;
   }
 
   /// F-test against the noise of the repeats, corrected for the dates of a change only.
@@ -351,7 +369,7 @@ class JointSearch {
   JointEffect described(const Choices& choices, std::size_t i) const {
     const Choice& c = choices[i];
     const JointBlock& block = r_.blocks[c.block];
-    const auto solution = system_.solve(choices);
+    const auto solution = system_.solve_with_estimated_noise(choices);
     JointEffect out{.effect = block.effect, .holds = c.holds, .after = c.after};
     out.size = size_of(choices, i);
     out.rms = rms_of(system_.residuals(choices, solution));
@@ -380,6 +398,59 @@ class JointSearch {
     return out;
   }
 
+  /// Adds to u what the searched shapes of the effect permit: the mean over all shapes, weighted by
+  /// their likelihood, of the squared distances from the printed values.
+  void add_shapes(JointEffect& effect, std::size_t i) const {
+    const JointBlock& named = r_.blocks[choices_[i].block];
+    if (named.searched == 0) return;
+    constexpr double out_of_sight = 25.0;  // of -2 ln of the likelihood
+    const auto gains = system_.gains(without(choices_, i), y_);
+    const MatrixXd& gain = choices_[i].holds == Holds::own ? gains.own : gains.shared;
+    const double best = gain(static_cast<Index>(choices_[i].block), 0);
+    struct Other {
+      double weight;
+      std::vector<std::vector<double>> variance;  // of each group and parameter
+    };
+    std::vector<Other> others;
+    double weights = 0.0;
+    const double least = criterion(choices_);
+    for (std::size_t b = 0; b < r_.blocks.size(); ++b) {
+      const JointBlock& block = r_.blocks[b];
+      if (block.effect != named.effect || block.count != named.count ||
+          !(gain(static_cast<Index>(b), 0) > best - out_of_sight))
+        continue;
+      Choices choices = choices_;
+      choices[i].block = b;
+      const auto solution = system_.solve(choices);
+      if (!solution.sound) continue;
+      Other other{std::exp(-0.5 * (solution.criterion() - least)), {}};
+      for (std::size_t g = 0; g < effect.groups.size(); ++g) {
+        const auto value = system_.values(choices, solution, i, g).first;
+        other.variance.emplace_back();
+        std::size_t linear = 0, shape = 0;
+        for (const Parameter& p : effect.groups[g]) {
+          const double now = p.shape ? block.shape[shape++]
+                             : linear < static_cast<std::size_t>(value.size())
+                                 ? value(static_cast<Index>(linear++))
+                                 : p.value;
+          other.variance.back().push_back((now - p.value) * (now - p.value));
+        }
+      }
+      weights += other.weight;
+      others.push_back(std::move(other));
+    }
+    for (std::size_t g = 0; g < effect.groups.size(); ++g)
+      for (std::size_t k = 0; k < effect.groups[g].size(); ++k) {
+        double variance = 0.0;
+        for (const Other& other : others) variance += other.weight / weights * other.variance[g][k];
+        Parameter& p = effect.groups[g][k];
+        if (!p.shape)
+          p.u = std::hypot(p.u, std::sqrt(variance));
+        else if (variance > 0.0)
+          p.u = std::sqrt(variance);
+      }
+  }
+
   /// Whether another effect that changes at the same date explains the readings as well.
   bool changes_as_well(Choices rest, const Choice& named, Choice other, double least) const {
     other.holds = named.holds, other.after = named.after;
@@ -391,6 +462,7 @@ class JointSearch {
     const double all = criterion(choices_);
     for (std::size_t i = 0; i < choices_.size(); ++i) {
       JointEffect effect = described(choices_, i);
+      add_shapes(effect, i);
       effect.p = unweighted_.corrected(effect.p);
       effect.weight = weight_of(choices_[i]);
       const Choices rest = without(choices_, i);
@@ -467,6 +539,25 @@ class JointSearch {
       out.verdict = Verdict::Kind::missing;
     else if (!out.explains_all)
       out.verdict = Verdict::Kind::unknown;
+    else if (out.single = shown_by_one(); out.single)
+      out.verdict = Verdict::Kind::unknown;
+  }
+
+  /// What is in one campaign only is invisible among the values of many, but not in that campaign.
+  /// At most 5 % of the copies with flipped stretches may show as much anywhere. Flipped passes tell
+  /// nothing here: of few passes of one campaign, many copies have the signs that the effect has.
+  std::optional<JointExplanation::Single> shown_by_one() const {
+    const auto found = system_.gains({}, y_), chance = system_.gains({}, flipped());
+    double as_much = 0.0;
+    for (Index k = 0; k < shuffles; k += 2) as_much += chance.single(k) >= found.single(0) ? 1 : 0;
+    if (as_much > 0.05 * static_cast<double>(shuffles / 2)) return std::nullopt;
+    const JointBlock& block = r_.blocks[found.single_block];
+    const MemberReadings& member = r_.members[found.single_member];
+    JointExplanation::Single out{block.effect, found.single_member};
+    const auto q = static_cast<double>(member.rank[found.single_block] + block.searched);
+    out.p = math::f_upper(found.single_fall / q, q, member.dof) *
+            static_cast<double>(system_.effects() * r_.members.size());
+    return out.p < differs_below ? std::optional(out) : std::nullopt;
   }
 
   /// Null if the catalog of the campaign does not contain the effect.

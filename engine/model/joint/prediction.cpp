@@ -108,6 +108,20 @@ MatrixXd zeros_of(const Observations& o, Index first, Index rows) {
   return out;
 }
 
+/// Of each unseen reading, whether it is outside the range of the seen positions of an axis.
+std::vector<char> outside_of(const Observations& seen, const Observations& unseen) {
+  constexpr double margin = 0.02;
+  std::vector<char> out(unseen.size(), 0);
+  for (const auto& axis : unseen.axes) {
+    const std::vector<double>& known = seen.axis(axis.axis)->position;
+    const auto [low, high] = std::minmax_element(known.begin(), known.end());
+    const double more = margin * (*high - *low);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (axis.position[i] < *low - more || axis.position[i] > *high + more) out[i] = 1;
+  }
+  return out;
+}
+
 MatrixXd with(const MatrixXd& a, const MatrixXd& b) {
   MatrixXd out(a.rows(), a.cols() + b.cols());
   out << a, b;
@@ -154,34 +168,45 @@ Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& m
                                             MatrixXd::Identity(a.cols(), a.cols()));
   const MatrixXd covariance = s2 * cofactor.topLeftCorner(k, k);
 
-  // Predict the readings `unseen`, whose zeros and set-up are new unknowns.
-  const MatrixXd free = with(of_unseen.bottomRows(m), zeros_of(both, n, m));
+  // Predict the readings `unseen`, whose zeros and set-up are new unknowns. A curve says nothing
+  // outside of its range.
+  const bool curved =
+      std::any_of(named.begin(), named.end(), [](const Term& term) { return term.effect->curve; });
+  const std::vector<char> far = outside_of(seen.table, unseen.table);
+  std::vector<Index> rows;
+  Prediction out;
+  for (Index i = 0; i < m; ++i) {
+    const bool outside = far[static_cast<std::size_t>(i)] != 0;
+    out.outside = out.outside || outside;
+    if (outside && curved)
+      ++out.left_out;
+    else
+      rows.push_back(i);
+  }
+  const MatrixXd all_free = with(of_unseen.bottomRows(m), zeros_of(both, n, m));
+  const MatrixXd free = all_free(rows, Eigen::all);
   const Eigen::ColPivHouseholderQR<MatrixXd> decomposed(free);
+  const auto count = static_cast<Index>(rows.size());
+  if (count <= decomposed.rank())
+    return fail(std::to_string(out.left_out) + " of " + std::to_string(m) +
+                " readings lie outside the places that the model was fitted to, where its curves "
+                "are not known; expected more readings inside");
   const MatrixXd q = math::orthonormal(decomposed, decomposed.rank());
-  VectorXd error = math::residual(y.tail(m), of_model.bottomRows(m), x.head(k));
-  VectorXd readings = y.tail(m);
-  MatrixXd from = of_model.bottomRows(m);
+  MatrixXd from = of_model.bottomRows(m)(rows, Eigen::all);
+  VectorXd readings = y.tail(m)(rows);
+  VectorXd error = math::residual(readings, from, x.head(k));
   math::take_out(q, error), math::take_out(q, readings), math::take_out(q, from);
   const MatrixXd spread = math::product(from, covariance);
-  Prediction out;
   std::size_t inside = 0;
-  for (Index i = 0; i < m; ++i) {
+  for (Index i = 0; i < count; ++i) {
     out.error.push_back(error(i));
     const double own_share = std::max(1.0 - q.row(i).squaredNorm(), 0.0);
     out.u.push_back(std::sqrt(s2 * own_share + spread.row(i).dot(from.row(i))));
     if (std::fabs(error(i)) <= 2.0 * out.u.back()) ++inside;
   }
-  out.rms = std::sqrt(error.squaredNorm() / static_cast<double>(m));
-  out.sd = std::sqrt(readings.squaredNorm() / static_cast<double>(m));
-  out.inside = static_cast<double>(inside) / static_cast<double>(m);
-  for (const auto& axis : unseen.table.axes) {
-    const auto* known = seen.table.axis(axis.axis);
-    const auto [low, high] = std::minmax_element(known->position.begin(), known->position.end());
-    const auto [least, most] = std::minmax_element(axis.position.begin(), axis.position.end());
-    constexpr double margin = 0.02;
-    const double more = margin * (*high - *low);
-    out.outside = out.outside || *least < *low - more || *most > *high + more;
-  }
+  out.rms = std::sqrt(error.squaredNorm() / static_cast<double>(count));
+  out.sd = std::sqrt(readings.squaredNorm() / static_cast<double>(count));
+  out.inside = static_cast<double>(inside) / static_cast<double>(count);
   return out;
 }
 

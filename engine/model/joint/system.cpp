@@ -113,6 +113,30 @@ JointSystem::Split JointSystem::split(const std::vector<Choice>& choices,
 }
 
 JointSystem::Solution JointSystem::solve(const std::vector<Choice>& choices) const {
+  return solve(choices, nullptr);
+}
+
+JointSystem::Solution JointSystem::solve_with_estimated_noise(
+    const std::vector<Choice>& choices) const {
+  std::vector<Information> members;
+  Solution out = solve(choices, &members);
+  if (!out.sound || out.covariance.size() == 0) return out;
+  const MatrixXd c = out.covariance;
+  MatrixXd more = MatrixXd::Zero(c.rows(), c.cols());
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    const auto& [a, at] = members[m];
+    const MatrixXd left = a - math::quadratic_form(c(at, at), a);
+    for (std::size_t i = 0; i < at.size(); ++i)
+      for (std::size_t k = 0; k < at.size(); ++k)
+        more(at[i], at[k]) +=
+            4.0 / r_.members[m].dof * left(static_cast<Index>(i), static_cast<Index>(k));
+  }
+  out.covariance += math::quadratic_form(more, c);
+  return out;
+}
+
+JointSystem::Solution JointSystem::solve(const std::vector<Choice>& choices,
+                                         std::vector<Information>* members) const {
   Solution out;
   const Index n = shared_columns(choices);
   MatrixXd s = MatrixXd::Zero(n, n);
@@ -143,6 +167,7 @@ JointSystem::Solution JointSystem::solve(const std::vector<Choice>& choices) con
     }
     out.parameters += rank;
     out.price += static_cast<double>(rank) * std::log(r_.members[m].readings);
+    if (members != nullptr) members->push_back({left, part.at});
   }
   out.sound = is_independent(s, before);
   if (!out.sound) return out;
@@ -195,6 +220,12 @@ std::vector<VectorXd> JointSystem::residuals(const std::vector<Choice>& choices,
   return out;
 }
 
+/// Normal deviate of a chi-squared variate (Wilson and Hilferty).
+static double deviate_of(double squares, double dof) {
+  const double variance = 2.0 / (9.0 * dof);
+  return (std::cbrt(squares / dof) - 1.0 + variance) / std::sqrt(variance);
+}
+
 JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
                                       const std::vector<MatrixXd>& y) const {
   struct Sums {
@@ -208,6 +239,7 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
   std::vector<Sums> sums(blocks);
   Gains out;
   out.own_parameters.assign(blocks, 0), out.own_price.assign(blocks, 0.0);
+  out.single = VectorXd::Constant(columns, -std::numeric_limits<double>::infinity());
   for (std::size_t b = 0; b < blocks; ++b) {
     const Index k = r_.blocks[b].count;
     sums[b] = {MatrixXd::Zero(k, k),   MatrixXd::Zero(k, n),       MatrixXd::Zero(k, columns),
@@ -252,7 +284,15 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
       if (rank < member.rank[b]) sum.own_possible = false;
       if (!sum.own_possible) continue;
       const MatrixXd weighted = math::product(inner, by);
-      sum.own += by.cwiseProduct(weighted).colwise().sum().transpose();
+      const VectorXd falls = by.cwiseProduct(weighted).colwise().sum().transpose();
+      sum.own += falls;
+      if (n == 0 && rank > 0)
+        for (Index c = 0; c < columns; ++c) {
+          const double z = deviate_of(falls(c), static_cast<double>(rank));
+          if (!(z > out.single(c))) continue;
+          out.single(c) = z;
+          if (c == 0) out.single_block = b, out.single_member = m, out.single_fall = falls(c);
+        }
       out.own_parameters[b] += rank;
       out.own_price[b] += static_cast<double>(rank) * std::log(member.readings);
       if (a == 0) continue;

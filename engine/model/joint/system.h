@@ -38,6 +38,11 @@ class JointSystem {
   };
   Solution solve(const std::vector<Choice>& choices) const;
 
+  /// The same, with the covariance of shared values enlarged because the weights of the members
+  /// come from noise that each member estimates from few readings: to the first order, from Meier,
+  /// Variance of a weighted mean, Biometrics 9 (1953), for several parameters.
+  Solution solve_with_estimated_noise(const std::vector<Choice>& choices) const;
+
   /// `group`: 0 for shared, 0 or 1 for changed, the member for own. Values and their covariance are
   /// empty if the choice is not identifiable.
   std::pair<VectorXd, MatrixXd> values(const std::vector<Choice>& choices, const Solution& s,
@@ -52,6 +57,11 @@ class JointSystem {
     MatrixXd shared, own;
     std::vector<Index> own_parameters;
     std::vector<double> own_price;  ///< cost of separate values in each member
+    /// Without choices: the most significant decrease by one block in one member, as a normal
+    /// deviate, for each column of `y`; where it is for the first column.
+    VectorXd single{};
+    std::size_t single_block = 0, single_member = 0;
+    double single_fall = 0.0;
   };
   Gains gains(const std::vector<Choice>& choices, const std::vector<MatrixXd>& y) const;
 
@@ -73,6 +83,11 @@ class JointSystem {
     Index rank;             // number of independent ones of the own columns
   };
   Split split(const std::vector<Choice>& choices, std::size_t member) const;
+  struct Information {
+    MatrixXd of;            // of the shared values, without the member's own
+    std::vector<Index> at;  // indices of these values
+  };
+  Solution solve(const std::vector<Choice>& choices, std::vector<Information>* members) const;
 
   const JointReadings& r_;
 };

@@ -130,9 +130,11 @@ std::vector<double> places_of(const SpaceReadings& s, std::size_t k) {
 }
 
 std::vector<double> knots_over(const std::vector<double>& places) {
+  const std::size_t n = places.size();
+  if (n < 6) return n < 4 ? std::vector<double>{} : std::vector<double>{2.0};
   std::vector<double> knots;
-  const std::size_t end = places.size() < 6 ? 3 : std::clamp<std::size_t>(places.size() / 2, 4, 11);
-  for (std::size_t k = 3; k < end; ++k) knots.push_back(static_cast<double>(k));
+  for (std::size_t k = 3; k < std::clamp<std::size_t>(n / 2, 4, 11); ++k)
+    knots.push_back(static_cast<double>(k));
   return knots;
 }
 

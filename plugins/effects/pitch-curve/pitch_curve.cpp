@@ -18,6 +18,7 @@ static std::vector<double> grid(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
   if (!r) return {};
   const std::vector<double> targets = targets_of(*r);
+  if (o.axes.size() > 1 && targets.size() < fewest_targets) return knots_over(targets);
   if (targets.size() < fewest_targets) return {};
   const int last = static_cast<int>(std::min<std::size_t>(targets.size() * 2 / 3, most + 1)) - 1;
   std::vector<double> knots;

@@ -155,6 +155,7 @@ Effect effect_of(const char* kind, const char* summary) {
     const Angle* a = angle_of(kind, place.name);
     if (a == nullptr) return std::vector<double>{};
     std::vector<double> knots = knots_over(places_of(space_of(o), a->axis));
+    if (knots.size() == 1 && knots.front() < 3.0) knots.clear();  // too few places for an angle
     knots.insert(knots.begin(), 0.0);
     return knots;
   };
@@ -188,8 +189,13 @@ Effect effect_of(const char* kind, const char* summary) {
 }  // namespace
 
 NONIO_PLUGIN(registry) {
-  registry.add(effect_of(
-      "yaw", "The carriage turns about the vertical as it travels (on a gantry: racking)"));
+  Effect yaw = effect_of(
+      "yaw", "The carriage turns about the vertical as it travels (on a gantry: racking)");
+  yaw.of_part = "part-yaw";
+  registry.add(yaw);
+  registry.add(in_frame_of_parts(
+      yaw, {"part-yaw", "1.0.0",
+            "A twist that turns with the part: of fixture, clamping or measuring machine"}));
   registry.add(effect_of("pitch", "The carriage nods as it travels"));
   registry.add(effect_of("roll", "The carriage turns about its own direction of travel"));
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A machined part whose features were measured on a coordinate measuring machine.
-//     d = R (m - p (1 + alpha (T2 - T1)))
-// p, m: nominal and measured position of a feature in the part, m; R: rotation of the part on the
+//     d = R (S m - p (1 + alpha (T2 - T1)) + v x p)
+// S, v: rotation that brings the measured features onto the nominal ones, and its vector, so that d
+// contains the rotation in its first order, as body-turn does; p, m: nominal and measured position of a feature in the part, m; R: rotation of the part on the
 // table about Z; d: error of the machine at the position origin + R p of the feature; T1, T2:
 // temperature of the part during machining, and reference temperature of the measurement. Position
 // and rotation of the part are unknown, and so is its size without temperatures (effects body-turn
@@ -11,6 +12,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "nonio/sdk/method.h"
 
@@ -33,6 +36,79 @@ Vector turned(const Vector& v, double angle) {
   double c = std::cos(angle), s = std::sin(angle);
   if (is_quarter(angle)) c = std::round(c), s = std::round(s);
   return {v[0] * c - v[1] * s, v[0] * s + v[1] * c, v[2]};
+}
+
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// Rodrigues' formula: p turned by the vector v, rad.
+Vector turned(const Vector& p, const Vector& v) {
+  const double angle = std::hypot(v[0], v[1], v[2]);
+  if (!(angle > 0.0)) return p;
+  const double s = std::sin(angle) / angle, c = 2.0 * std::pow(std::sin(0.5 * angle) / angle, 2.0);
+  const Vector once = cross(v, p), twice = cross(v, once);
+  Vector out{};
+  for (std::size_t k = 0; k < 3; ++k) out[k] = p[k] + s * once[k] + c * twice[k];
+  return out;
+}
+
+/// Where the measured features are against the nominal ones, by least squares: vector of the
+/// rotation, rad, and shift, m.
+struct Placed {
+  Vector turn{}, shift{};
+};
+
+/// The rotation is one about Z, and also about X and Y if a feature has all three coordinates. A
+/// linear model would take the square of some mrad for a scale of 10 um/m.
+Placed placed(const Readings& r) {
+  std::vector<std::pair<Vector, Vector>> places;
+  const auto take = [&](std::size_t count) {
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      std::pair<Vector, Vector> one{};
+      bool whole = true;
+      for (std::size_t k = 0; k < count; ++k) {
+        const auto *to = r.column(nominal[k]), *from = r.column(measured[k]);
+        whole = whole && to != nullptr && from != nullptr && std::isfinite((*from)[i]);
+        if (whole) one.first[k] = (*to)[i], one.second[k] = (*from)[i];
+      }
+      if (whole) places.push_back(one);
+    }
+  };
+  take(3);
+  const bool flat = places.empty();
+  if (flat) take(2);
+  Vector p0{}, m0{};
+  for (const auto& [p, m] : places)
+    for (std::size_t k = 0; k < 3; ++k) {
+      p0[k] += p[k] / static_cast<double>(places.size());
+      m0[k] += m[k] / static_cast<double>(places.size());
+    }
+  for (auto& [p, m] : places)
+    for (std::size_t k = 0; k < 3; ++k) p[k] -= p0[k], m[k] -= m0[k];
+  Vector v{};
+  for (int round = 0; round < 5; ++round) {
+    std::array<Vector, 3> a{};  // of a w = b
+    Vector b{};
+    for (const auto& [p, m] : places) {
+      const Vector now = turned(m, {-v[0], -v[1], -v[2]}), torque = cross(p, now);
+      const double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+      for (std::size_t k = 0; k < 3; ++k) {
+        b[k] += torque[k];
+        for (std::size_t l = 0; l < 3; ++l) a[k][l] += (k == l ? square : 0.0) - p[k] * p[l];
+      }
+    }
+    Vector w{0.0, 0.0, a[2][2] > 0.0 ? b[2] / a[2][2] : 0.0};
+    if (!flat) {
+      const Vector x = cross(a[1], a[2]), y = cross(a[2], a[0]), z = cross(a[0], a[1]);
+      const double volume = a[0][0] * x[0] + a[0][1] * x[1] + a[0][2] * x[2];
+      if (!(volume > 1e-9 * a[0][0] * a[1][1] * a[2][2])) return {};
+      for (std::size_t k = 0; k < 3; ++k) w[k] = (x[k] * b[0] + y[k] * b[1] + z[k] * b[2]) / volume;
+    }
+    for (std::size_t k = 0; k < 3; ++k) v[k] += w[k];
+  }
+  const Vector centre = turned(p0, v);
+  return {v, {m0[0] - centre[0], m0[1] - centre[1], m0[2] - centre[2]}};
 }
 
 /// Relative growth of the part between machining and measurement, and whether it is known.
@@ -107,13 +183,16 @@ Expected<Observations> observations_of(const MethodInput& in) {
       from[k] = at->second * 1e-3;
   const std::vector<double>* z = r.column(nominal[2]);
   Rows rows(m, {true, true, z != nullptr}, growth.second, from, angle);
+  const auto [turn, shift] = placed(r);
+  const Vector back{-turn[0], -turn[1], -turn[2]};
   std::uint64_t missing = 0;
   for (std::size_t i = 0; i < r.size(); ++i) {
     const Vector p{(*r.column(nominal[0]))[i], (*r.column(nominal[1]))[i],
                    z == nullptr ? 0.0 : (*z)[i]};
     if (std::isnan(p[2]))
       return fail("nominal_z: expected a number in each row, or no such column");
-    Vector d{};
+    Vector place = turned(p, turn);
+    for (std::size_t k = 0; k < 3; ++k) place[k] += shift[k];  // kept where it was not measured
     std::array<bool, 3> has{};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto* found = r.column(measured[k]);
@@ -123,17 +202,22 @@ Expected<Observations> observations_of(const MethodInput& in) {
         ++missing;
         continue;
       }
-      d[k] = (*found)[i] - p[k] * (1.0 + growth.first);
-      if (std::fabs(d[k]) > largest)
-        return fail(
-            Error{std::string(measured[k]) + ": expected a place within 10 mm of the nominal one",
-                  m.file, r.source_line[i]});
+      place[k] = (*found)[i];
+      if (std::fabs(place[k] - p[k] * (1.0 + growth.first)) > largest)
+        return fail(Error{
+            std::string(measured[k]) +
+                ": expected a place within 10 mm of the nominal one; is the frame of the "
+                "measurement turned or mirrored, are columns exchanged, or is it another unit?",
+            m.file, r.source_line[i]});
     }
     if (has[0] != has[1] && !is_quarter(angle))
       return fail(
           Error{"expected both coordinates of a feature of a part that was not turned by a "
                 "multiple of 90 deg",
                 m.file, r.source_line[i]});
+    Vector d = turned(place, back);
+    const Vector of_turn = cross(turn, p);
+    for (std::size_t k = 0; k < 3; ++k) d[k] += of_turn[k] - p[k] * (1.0 + growth.first);
     const Vector at = turned(p, angle), error = turned(d, angle);
     const Vector which = turned({has[0] ? 1.0 : 0.0, has[1] ? 1.0 : 0.0, 0.0}, angle);
     for (std::size_t k = 0; k < 3; ++k) {

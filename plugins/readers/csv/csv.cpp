@@ -447,8 +447,8 @@ Option columns_declared() {
       std::string(columns_option), std::vector<std::string>(), "",
       "Columns with other names: \"NAME = KNOWN\" for each, such as \"Soll mm = target_mm\", or "
       "\"NAME = ignore\". A column without a name, or with one that occurs twice, has its number: "
-      "\"#3 = target_mm\". Rows above the one that has them are not read. Kinds axis, "
-      "straightness, angle and diagonal"};
+      "\"#3 = target_mm\". Kinds axis, straightness, angle and diagonal, where rows above the one "
+      "that has them are not read; part, and methods of other plugins"};
 }
 
 Expected<std::vector<std::vector<std::string>>> first_rows(std::string_view bytes,

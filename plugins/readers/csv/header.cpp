@@ -37,8 +37,6 @@ constexpr std::array<Known, 13> known_columns = {{
     {"humidity_pct", Role::humidity},
 }};
 
-constexpr std::string_view ignore = "ignore";
-
 const Known* find(std::string_view name) {
   const auto it = std::find_if(known_columns.begin(), known_columns.end(),
                                [&](auto& k) { return k.name == name; });
@@ -147,20 +145,24 @@ bool Header::has(Role role) const {
   return std::find(roles.begin(), roles.end(), role) != roles.end();
 }
 
-Expected<StatedColumns> StatedColumns::of(const std::vector<std::string>& entries) {
+Expected<StatedColumns> StatedColumns::of(const std::vector<std::string>& entries,
+                                          std::vector<std::string_view> names) {
+  if (names.empty())
+    for (const Known& k : known_columns) names.push_back(k.name);
   StatedColumns out;
   for (const std::string& entry : entries) {
     const std::size_t equals = entry.rfind('=');
     const auto name = trimmed(std::string_view(entry).substr(0, std::min(equals, entry.size())));
     const auto known = equals == entry.npos ? std::string_view()
                                             : trimmed(std::string_view(entry).substr(equals + 1));
-    if (name.empty() || (known != ignore && find(known) == nullptr)) {
+    if (name.empty() ||
+        (known != ignore && std::find(names.begin(), names.end(), known) == names.end())) {
       std::string list;
-      for (const Known& k : known_columns) list += std::string(k.name) + ", ";
-      return fail(
-          "option columns: expected entries such as \"Soll mm = target_mm\" or \"#3 = "
-          "target_mm\", with one of " +
-          list + "ignore; found " + shown(entry));
+      for (const std::string_view one : names) list += std::string(one) + ", ";
+      const std::string first(names.front());
+      return fail("option columns: expected entries such as \"Soll mm = " + first +
+                  "\" or \"#3 = " + first + "\", with one of " + list + "ignore; found " +
+                  shown(entry));
     }
     if (std::any_of(out.names_.begin(), out.names_.end(),
                     [&](const Stated& one) { return one.name == name; }))

@@ -32,12 +32,16 @@ struct ChannelEnding {
 inline constexpr ChannelEnding channel_endings[] = {
     {"_c", "degC"}, {"_rpm", "rpm"}, {"_pct", "%"}, {"_kw", "kW"}, {"_a", "A"}};
 
+inline constexpr std::string_view ignore = "ignore";
+
 /// Option `columns`: pairs of the name in the file (or "#3" for the third column) and a known name
 /// or "ignore".
 class StatedColumns {
  public:
-  /// Parses entries such as "Soll mm = target_mm". Error: any other form.
-  static Expected<StatedColumns> of(const std::vector<std::string>& entries);
+  /// Parses entries such as "Soll mm = target_mm". `names`: known names; without them those of
+  /// readings of an axis. Error: any other form.
+  static Expected<StatedColumns> of(const std::vector<std::string>& entries,
+                                    std::vector<std::string_view> names = {});
   bool empty() const { return names_.empty(); }
   /// The known name of column `index` (from 0); `name` itself if the option does not contain it.
   std::string_view known(std::string_view name, std::size_t index) const;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "csv.h"
 #include "header.h"
 #include "nonio/sdk/method.h"
 #include "spatial.h"
@@ -116,7 +117,10 @@ Expected<Observations> read_declared(const ReadInput& input) {
   std::vector<ColumnSpec> columns;
   for (const Method::Column& c : method.columns)
     columns.push_back({name_in_file(c), kind_of(c), c.required});
-  NONIO_TRY(auto table, in_file(read_table(input.bytes, columns), input));
+  std::vector<std::string_view> names;
+  for (const ColumnSpec& c : columns) names.push_back(c.name);
+  NONIO_TRY(const auto stated, StatedColumns::of(input.options.texts(columns_option), names));
+  NONIO_TRY(auto table, in_file(read_table(input.bytes, columns, &stated), input));
   Readings readings;
   readings.source_line = std::move(table.line);
   for (const Method::Column& c : method.columns) {

@@ -35,7 +35,8 @@ const ColumnSpec* find(const std::vector<ColumnSpec>& columns, std::string_view 
 
 class TableReader {
  public:
-  explicit TableReader(const std::vector<ColumnSpec>& columns) : columns_(columns) {}
+  TableReader(const std::vector<ColumnSpec>& columns, const StatedColumns* stated)
+      : columns_(columns), stated_(stated) {}
 
   Expected<Table> read(std::string_view bytes) {
     Lines lines(bytes);
@@ -65,14 +66,21 @@ class TableReader {
     return error;
   }
 
+  std::string_view meaning_of(std::string_view name, std::size_t index) const {
+    return stated_ == nullptr ? name : stated_->known(name, index);
+  }
+
   char separator_of(std::string_view row) const {
     char best = ',';
     std::ptrdiff_t most = -1;
     for (const char separator : {',', ';', '\t'}) {
       std::vector<std::string_view> names;
       if (!split(row, separator, names)) continue;
-      const auto known = std::count_if(names.begin(), names.end(),
-                                       [&](auto name) { return find(columns_, name) != nullptr; });
+      std::size_t at = 0;
+      const auto known = std::count_if(names.begin(), names.end(), [&](auto name) {
+        const std::string_view meant = meaning_of(name, at++);
+        return meant == ignore || find(columns_, meant) != nullptr;
+      });
       if (known > most) {
         most = known;
         best = separator;
@@ -85,7 +93,12 @@ class TableReader {
     separator_ = separator_of(row);
     if (!split(row, separator_, fields_))
       return Error{"header row: unterminated quoted field, or text after the closing quote"};
-    for (const std::string_view name : fields_) {
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      const std::string_view name = meaning_of(fields_[i], i);
+      if (name == ignore) {
+        own_.push_back(nullptr);
+        continue;
+      }
       const ColumnSpec* spec = find(columns_, name);
       if (spec == nullptr) return unknown(name);
       if (has(name))
@@ -97,7 +110,9 @@ class TableReader {
     for (const ColumnSpec& spec : columns_)
       if (spec.required && !has(spec.name)) return missing(spec.name);
     for (const ColumnSpec* spec : own_)
-      if (spec->kind == Kind::word)
+      if (spec == nullptr)
+        words_.push_back(nullptr), numbers_.push_back(nullptr);
+      else if (spec->kind == Kind::word)
         words_.push_back(&table_.words[spec->name]), numbers_.push_back(nullptr);
       else
         numbers_.push_back(&table_.numbers[spec->name]), words_.push_back(nullptr);
@@ -106,7 +121,7 @@ class TableReader {
 
   bool has(std::string_view name) const {
     return std::any_of(own_.begin(), own_.end(),
-                       [&](const auto* own) { return own->name == name; });
+                       [&](const auto* own) { return own != nullptr && own->name == name; });
   }
 
   Error unknown(std::string_view name) const {
@@ -118,8 +133,12 @@ class TableReader {
     std::vector<std::string_view> names;
     for (const ColumnSpec& c : columns_)
       if (!c.name.starts_with('*')) names.push_back(c.name);
-    return Error{"unknown column " + shown(name) + "; did you mean \"" +
-                 std::string(nearest(name, names)) + "\"?"};
+    Error error{"unknown column " + shown(name) + "; did you mean \"" +
+                std::string(nearest(name, names)) + "\"?"};
+    if (stated_ != nullptr)
+      error.message += " Otherwise state what it is with option columns: " +
+                       shown(std::string(name) + " = ignore");
+    return error;
   }
 
   Error missing(const std::string& name) const {
@@ -146,7 +165,7 @@ class TableReader {
     if (line_ > std::numeric_limits<std::uint32_t>::max())
       return Error{"expected at most 4294967295 lines"};
     for (std::size_t i = 0; i < own_.size(); ++i)
-      if (auto error = take_field(i)) return error;
+      if (auto error = own_[i] != nullptr ? take_field(i) : std::nullopt) return error;
     table_.line.push_back(static_cast<std::uint32_t>(line_));
     return std::nullopt;
   }
@@ -220,6 +239,7 @@ class TableReader {
   }
 
   const std::vector<ColumnSpec>& columns_;
+  const StatedColumns* stated_;
   std::deque<ColumnSpec> found_;
   std::vector<const ColumnSpec*> own_;
   std::vector<std::vector<double>*> numbers_;
@@ -233,8 +253,9 @@ class TableReader {
 
 }  // namespace
 
-Expected<Table> read_table(std::string_view bytes, const std::vector<ColumnSpec>& columns) {
-  return TableReader(columns).read(bytes);
+Expected<Table> read_table(std::string_view bytes, const std::vector<ColumnSpec>& columns,
+                           const StatedColumns* stated) {
+  return TableReader(columns, stated).read(bytes);
 }
 
 }  // namespace nonio::csv

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "header.h"
 #include "nonio/sdk/error.h"
 
 namespace nonio::csv {
@@ -42,7 +43,8 @@ struct Table {
   }
 };
 
-/// Error: an invalid line or column.
-Expected<Table> read_table(std::string_view bytes, const std::vector<ColumnSpec>& columns);
+/// `stated`: names that columns have instead. Error: an invalid line or column.
+Expected<Table> read_table(std::string_view bytes, const std::vector<ColumnSpec>& columns,
+                           const StatedColumns* stated = nullptr);
 
 }  // namespace nonio::csv

@@ -29,12 +29,13 @@ class Part(unittest.TestCase):
         self.top = pathlib.Path(folder.name)
         self.rng = random.Random(SEED)
 
-    def campaign(self, name, story, size=4.0, holes=100, parts=(("P1", 0), ("P2", 90)), known=False, temperature=0.0):
+    def campaign(self, name, story, size=4.0, holes=100, parts=(("P1", 0), ("P2", 90)), known=False, temperature=0.0, turn=0.0):
         folder = self.top / name
-        folder.mkdir()
+        folder.mkdir(parents=True)
+        holes = plates.grid(holes) if isinstance(holes, int) else holes
         for part, turned in parts:
-            plates.plate(folder / f"{part}.csv", plates.grid(holes), plates.errors(story, size), 1.0,
-                         math.radians(turned), self.rng, temperature)
+            plates.plate(folder / f"{part}.csv", holes, plates.errors(story, size), 1.0,
+                         math.radians(turned), self.rng, temperature, turn)
         plates.write(folder, parts, known=known)
         return folder
 
@@ -93,6 +94,43 @@ class Part(unittest.TestCase):
         # With temperatures that are stated, and wrong, the size is one of the axes.
         answer = self.explain(self.campaign("b", "none", known=True, temperature=7.0))
         self.assertTrue({"scale:X", "scale:Y"} <= set(answer["together"]), answer["together"])
+
+    def test_a_frame_that_is_turned_is_no_scale(self):
+        """Of 9 mrad the square is 40 um/m: eight times the U of a scale."""
+        self.rng = random.Random(13)
+        for k, parts in enumerate(((("P1", 0),), (("P1", 0), ("P2", 90)))):
+            answer = self.explain(self.campaign(str(k), "none", parts=parts, known=True, turn=9e-3))
+            self.assertNotEqual(answer["verdict"]["kind"], "missing", answer["verdict"])
+        answer = self.explain(self.campaign("bowed", "straightness:EYX", turn=-9e-3))
+        self.assertEqual(answer["together"], ["straightness:EYX"])
+
+    def test_four_columns_show_a_bow(self):
+        for columns in (4, 5):
+            holes = [(round(plates.SIZE * (i / (columns - 1) - 0.5), 3), 50.0 * k - 200.0) for i in range(columns) for k in range(9)]
+            answer = self.explain(self.campaign(str(columns), "straightness:EYX", holes=holes, parts=(("P1", 0),)))
+            self.assertIn("straightness:EYX", answer["together"])
+
+    def test_how_a_part_lay_is_not_followed_over_the_years(self):
+        self.campaign("site/a", "none")
+        with open(self.top / "site/a/campaign.toml", "a", encoding="utf-8") as text:
+            text.write('[run]\nanalyses = ["model-fit"]\n')
+        subprocess.run([NONIO, "run", self.top / "site", "--out", self.top / "out"], capture_output=True, check=True)
+        results = (self.top / "out/a/results.json").read_text()
+        self.assertIn("body-turn:P1 Z", results)
+        self.assertFalse([q for q in json.loads(results).get("followed", []) if "body-" in q["quantity"]])
+
+    def test_an_export_with_names_of_features(self):
+        folder = self.campaign("a", "squareness:XY")
+        plain = self.explain(folder)
+        rows = (folder / "P1.csv").read_text().splitlines()
+        rows[0] = "Merkmal," + rows[0].replace("nominal_x_mm", "Soll X")
+        (folder / "P1.csv").write_text("\n".join([rows[0]] + [f"H{k},{row}" for k, row in enumerate(rows[1:])]) + "\n")
+        done = subprocess.run([NONIO, "model", "explain", folder], capture_output=True, text=True, check=False)
+        self.assertIn('P1.csv:1: unknown column "Merkmal"', done.stderr)
+        self.assertIn('option columns: "Merkmal = ignore"', done.stderr)
+        with open(folder / "campaign.toml", "a", encoding="utf-8") as text:
+            text.write('[options.csv]\ncolumns = ["Merkmal = ignore", "Soll X = nominal_x_mm"]\n')
+        self.assertEqual(self.explain(folder)["verdict"], plain["verdict"])
 
     def test_an_error_of_the_plate_turns_with_it(self):
         """What is in both plates at the same holes, however they lay, is no effect of the machine."""

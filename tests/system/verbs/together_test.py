@@ -9,6 +9,7 @@ import pathlib
 import random
 import re
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -94,6 +95,25 @@ class Together(unittest.TestCase):
         alone = [json.loads(explain(c, "--json", "--quiet").stdout)["verdict"]["kind"] for c in sorted(self.site.iterdir())]
         self.assertLess(alone.count("missing"), 24)
         self.assertEqual([e["effect"] for e in self.answer()["effects"]], ["periodic:X"])
+
+    def test_what_one_campaign_shows_is_not_denied(self):
+        self.rng = random.Random(31)
+        named = 0
+        for n in range(4):
+            site = self.site / str(n)
+            fleet.fleet(site, "none", "backlash:X", 0.0, 12, 0.0, self.rng)
+            path = site / "c0005" / "x.csv"
+            head, *rows = path.read_text().splitlines()
+            fields = [row.split(",") for row in rows]
+            noise = statistics.stdev(float(f[3]) for f in fields)
+            for f in fields:
+                f[3] = f"{float(f[3]) + (-1 if f[1] == '+' else 1) * 0.5 * noise:.3f}"
+            path.write_text("\n".join([head] + [",".join(f) for f in fields]) + "\n")
+            verdict = self.answer(site)["verdict"]
+            alone = json.loads(explain(site / "c0005", "--json", "--quiet").stdout)["verdict"]["kind"]
+            self.assertFalse(verdict["kind"] == "nothing" and alone == "missing", verdict)
+            named += "c0005" in verdict["says"] and "backlash:X" in verdict["says"]
+        self.assertGreaterEqual(named, 2)
 
     def test_other_targets_are_no_other_machine(self):
         """A curve has another straight line through 11 targets than through 41: its slope is no scale that differs."""

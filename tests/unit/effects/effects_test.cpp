@@ -242,8 +242,8 @@ TEST(Effects, EveryOneHasACardInEveryLanguage) {
     };
     auto all = kinds;
     all.insert(all.end(), kinds_in_space.begin(), kinds_in_space.end());
-    all.insert(all.end(),
-               {"part-squareness", "part-straightness", "part-scale", "part-pitch-curve"});
+    all.insert(all.end(), {"part-squareness", "part-straightness", "part-scale", "part-pitch-curve",
+                           "part-yaw"});
     all.insert(all.end(), kinds_of_circles.begin(), kinds_of_circles.end());
     all.insert(all.end(), kinds_of_channels.begin(), kinds_of_channels.end());
     all.insert(all.end(), descriptions.begin(), descriptions.end());

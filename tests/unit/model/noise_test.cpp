@@ -127,6 +127,22 @@ TEST(Noise, generalised_least_squares_agree_with_the_dense_covariance) {
     }
 }
 
+/// The terms of passes could follow the readings outside of a stretch closer with every round.
+TEST(Noise, no_stretch_has_more_scatter_than_the_readings_show) {
+  std::mt19937_64 random(23);
+  int stretches = 0;
+  for (int k = 0; k < 3000; ++k) {
+    Table table(12, 3);
+    add_noise(table, 0.0, 1e-6, random);
+    table.at(static_cast<std::size_t>(k) % table.size()) += 6e-6;
+    const Comparison c = compared(table);
+    for (const double rough : c.fit.noise.rough) ASSERT_LT(rough, 5.0) << k;
+    if (c.floor) ASSERT_LT(c.floor->s, 3e-6) << k;
+    stretches += c.fit.noise.stretch ? 1 : 0;
+  }
+  EXPECT_LE(stretches, 30);  // found by chance in 0.5 % of tables of independent readings
+}
+
 TEST(Noise, the_correlation_of_neighbours_is_measured_without_bias) {
   std::mt19937_64 random(21);
   for (const double rho : {0.0, 0.3, 0.6, 0.8}) {

@@ -70,6 +70,13 @@ struct JointExplanation {
   bool explains_all = true;  ///< whether the named effects leave only noise
   double p_left = 1.0;       ///< p-value of the residuals after the named effects
   double trials = 1.0;       ///< number of independent tests that the search is equivalent to
+  /// If nothing is missing in all: an effect that one campaign shows and the others do not.
+  struct Single {
+    std::string effect;
+    std::size_t campaign = 0;
+    double p = 1.0;  ///< F-test, times the number of effects and campaigns
+  };
+  std::optional<Single> single{};
 };
 
 /// Least squares over all members; each reading is weighted by the noise floor of its campaign or,

@@ -20,6 +20,8 @@ struct Prediction {
   std::optional<double> fails_from{}, fails_until{};
   /// whether an axis leaves the range of the fit by more than 2 % of it, or a channel by 10 %
   bool outside = false;
+  /// Readings outside the range of the curves of the model: in none of the other members.
+  std::size_t left_out = 0;
 };
 
 /// `unseen`: the same displacement at another time; `zero_kept`: the zero is that of the fit, not a
@@ -31,7 +33,8 @@ Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, c
 /// Predicts readings of an axis or of lines in space. The zeros of the unseen lines and the
 /// parameters of the effects `set_up` are new unknowns. u combines the parameters, the new unknowns
 /// and one reading. Errors: the parts have different axes or no lines, one has lengths and the
-/// other angles, or the seen readings do not determine the model or leave no degree of freedom.
+/// other angles, the seen readings do not determine the model or leave no degree of freedom, or the
+/// unseen readings are outside the range of its curves.
 Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& model,
                                     const Part& unseen, const std::vector<Term>& set_up);
 

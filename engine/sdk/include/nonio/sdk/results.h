@@ -222,6 +222,7 @@ struct ModelFit {
     bool compensable = false;          ///< whether a table of the control can compensate it
     std::vector<double> contribution;  ///< predicted contribution to each reading, m or rad
     std::optional<Curve> curve{};
+    bool is_set_up = false;  ///< of the set-up, not of the machine: in every model of such readings
   };
   /// An effect that is supported by the readings but not part of the model; m or rad.
   struct Candidate {
