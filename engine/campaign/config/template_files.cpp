@@ -120,8 +120,7 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
                       : name.ends_with(".toml") ? storage::Json{{"text", std::string_view(bytes)}}
                                                 : storage::Json{{"hex", to_hex(bytes)}};
     if (in_other_language(name, languages) && is_installed) continue;
-    if (auto kept = keep(templates, name, bytes, path.string()); !kept)
-      return fail(kept.error());
+    if (auto kept = keep(templates, name, bytes, path.string()); !kept) return fail(kept.error());
   }
   if (auto read = causes_in(templates))
     add_words(**read, templates);
@@ -177,8 +176,7 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
                        ours["files"][name] == item.value();
     if (!known && travels(name)) out.strange.push_back(name);
     all += line_of(name, sum.empty() ? storage::sha256(bytes) : sum);
-    if (auto kept = keep(out.templates, name, bytes, name); !kept)
-      return fail(kept.error());
+    if (auto kept = keep(out.templates, name, bytes, name); !kept) return fail(kept.error());
   }
   if (ours.is_object() && ours.contains("files"))
     for (const auto& [name, file] : ours["files"].items())

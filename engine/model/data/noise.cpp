@@ -197,7 +197,8 @@ void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<dou
     if (std::fabs(off) < nearest) nearest = std::fabs(off), noise.measured = rho;
     const double value = off * off + rho * rho / (usual * usual);
     const bool is_possible = none.trace <= largest * expected.trace(rho);
-    if (value < least && (is_possible || rho == 0.0)) least = value, noise.neighbours = noise.in_repeats = rho;
+    if (value < least && (is_possible || rho == 0.0))
+      least = value, noise.neighbours = noise.in_repeats = rho;
   }
   noise.u_neighbours = noise.measured / z;
 }
