@@ -366,6 +366,9 @@ std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects
 
 std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>& effects) {
   std::vector<Candidate> out;
+  // No column of a file can state how a machine made the features of a part.
+  const bool of_a_body = std::any_of(part.table.lines.begin(), part.table.lines.end(),
+                                     [](const auto& line) { return !line.body.empty(); });
   for (const Effect& effect : effects) {
     if (effect.is_nuisance || effect.description || !effect.why_not) continue;
     for (const std::string& of : offered_by(part, effect)) {
@@ -376,7 +379,7 @@ std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>&
       Candidate c;
       c.term = std::move(*term);
       c.visible = false;
-      c.why = std::move(why.id);
+      c.why = of_a_body && why.id != "few-targets" ? "of-part" : std::move(why.id);
       c.rows = std::move(why.rows);
       out.push_back(std::move(c));
     }

@@ -43,6 +43,7 @@ class JointSearch {
     JointExplanation out;
     put_candidates(out);
     find();
+    prefer_pairs();
     prune();
     settle_differences();
     put_effects(out);
@@ -121,6 +122,28 @@ class JointSearch {
         settle(i);
         if (!(criterion(choices_) < least)) choices_ = before;
       }
+  }
+
+  /// Replaces an effect with searched shapes by two others, if they explain the readings better: a
+  /// warm-up with its fixed point imitates a growth about one end, which is a growth and a drift.
+  void prefer_pairs() {
+    for (std::size_t i = 0; i < choices_.size(); ++i) {
+      if (r_.blocks[choices_[i].block].searched == 0 || choices_.size() >= most_effects) continue;
+      const Choices before = choices_;
+      const std::string effect = r_.blocks[before[i].block].effect;
+      choices_ = without(before, i);
+      bool added = true;
+      for (int k = 0; k < 2 && added; ++k) {
+        auto all = scored(choices_);
+        all.erase(effect);
+        const Scored best = simplest(all);
+        added = best.evidence > 0.0;
+        if (!added) break;
+        choices_.push_back(best.choice);
+        settle();
+      }
+      if (!added || !(criterion(choices_) < criterion(before))) choices_ = before;
+    }
   }
 
   static Choices without(Choices choices, std::size_t i) {
@@ -535,11 +558,10 @@ class JointSearch {
     out.p_left = t > 0.0 ? 0.5 * math::t_two_sided(t, n - 1.0) : 1.0;
     const double size = std::sqrt(std::max(found - mean, 0.0) / system_.readings());
     out.explains_all = !(out.p_left < lacks_fit_p && size > least_left);
+    if (out.effects.empty() && out.explains_all) out.single = shown_by_one();
     if (!out.effects.empty())
       out.verdict = Verdict::Kind::missing;
-    else if (!out.explains_all)
-      out.verdict = Verdict::Kind::unknown;
-    else if (out.single = shown_by_one(); out.single)
+    else if (!out.explains_all || out.single)
       out.verdict = Verdict::Kind::unknown;
   }
 
@@ -550,7 +572,7 @@ class JointSearch {
     const auto found = system_.gains({}, y_), chance = system_.gains({}, flipped());
     double as_much = 0.0;
     for (Index k = 0; k < shuffles; k += 2) as_much += chance.single(k) >= found.single(0) ? 1 : 0;
-    if (as_much > 0.05 * static_cast<double>(shuffles / 2)) return std::nullopt;
+    if (as_much > 0.05 * 0.5 * static_cast<double>(shuffles)) return std::nullopt;
     const JointBlock& block = r_.blocks[found.single_block];
     const MemberReadings& member = r_.members[found.single_member];
     JointExplanation::Single out{block.effect, found.single_member};
