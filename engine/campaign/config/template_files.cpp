@@ -68,7 +68,8 @@ std::string line_of(const std::string& name, const std::string& digest) {
 
 /// Of the program's own fonts, one has 4 MB and is rarely drawn with.
 Expected<SharedBytes> bytes_of(const fs::path& path, bool is_mapped) {
-  if (!is_mapped) return storage::read_file(path).map([](std::string b) { return SharedBytes(b); });
+  if (!is_mapped)
+    return storage::read_file(path).map([](std::string b) { return SharedBytes(std::move(b)); });
   NONIO_TRY(auto file, storage::MappedFile::open(path));
   const auto kept = std::make_shared<const storage::MappedFile>(std::move(file));
   return SharedBytes(kept, kept->bytes());

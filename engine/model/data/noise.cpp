@@ -163,10 +163,10 @@ double scatter_with_passes(const Repeats& r, const Saturated& s, const std::vect
 }
 
 /// The correlation is used if it exceeds `least_seen` standard deviations, and is then reduced
-/// towards 0 by a normal prior with standard deviation `usual`. In short passes it is hard to tell
-/// from chance, but strongly correlated noise would make their offsets differ, too: it cannot be
-/// larger than `most` times the scatter of the repeats with these. With fewer than 8 degrees of
-/// freedom, the correlation is not known.
+/// towards 0 by a normal prior with standard deviation `usual`. In short passes it is very uncertain,
+/// but strongly correlated noise would make their offsets differ, too: the variance of the noise that
+/// the correlation implies is at most `most` times that of the repeats with these offsets. With fewer
+/// than 8 degrees of freedom, the correlation is not known.
 void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<double>& y,
                      const std::vector<double>& weight, Noise& noise) {
   // docs/dev/constants.md, M25.

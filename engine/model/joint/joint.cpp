@@ -127,8 +127,12 @@ class JointSearch {
   /// Replaces an effect with searched shapes by two others, if they explain the readings better: a
   /// warm-up with its fixed point imitates a growth about one end, which is a growth and a drift.
   void prefer_pairs() {
-    for (std::size_t i = 0; i < choices_.size(); ++i) {
-      if (r_.blocks[choices_[i].block].searched == 0 || choices_.size() >= most_effects) continue;
+    for (std::size_t i = 0; i < choices_.size();) {
+      const std::size_t next = i + 1;
+      if (r_.blocks[choices_[i].block].searched == 0 || choices_.size() >= most_effects) {
+        i = next;
+        continue;
+      }
       const Choices before = choices_;
       const std::string effect = r_.blocks[before[i].block].effect;
       choices_ = without(before, i);
@@ -142,7 +146,8 @@ class JointSearch {
         choices_.push_back(best.choice);
         settle();
       }
-      if (!added || !(criterion(choices_) < criterion(before))) choices_ = before;
+      // Where it was replaced, another effect is at i now.
+      if (!added || !(criterion(choices_) < criterion(before))) choices_ = before, i = next;
     }
   }
 
@@ -566,8 +571,8 @@ class JointSearch {
   }
 
   /// What is in one campaign only is invisible among the values of many, but not in that campaign.
-  /// At most 5 % of the copies with flipped stretches may show as much anywhere. Flipped passes tell
-  /// nothing here: of few passes of one campaign, many copies have the signs that the effect has.
+  /// At most 5 % of the copies with flipped stretches may show as much anywhere. Copies with flipped
+  /// passes are not used: with few passes, many of them have the signs that the effect has.
   std::optional<JointExplanation::Single> shown_by_one() const {
     const auto found = system_.gains({}, y_), chance = system_.gains({}, flipped());
     double as_much = 0.0;

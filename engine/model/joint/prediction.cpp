@@ -108,18 +108,43 @@ MatrixXd zeros_of(const Observations& o, Index first, Index rows) {
   return out;
 }
 
+/// Whether a curve of the model is one over this axis: `pitch-curve:X`, `straightness:EYX`.
+bool has_curve_over(const std::vector<Term>& model, const std::string& axis) {
+  return std::any_of(model.begin(), model.end(), [&](const Term& term) {
+    return term.effect->curve && term.axis.name.ends_with(axis);
+  });
+}
+
 /// Of each unseen reading, whether it is outside the range of the seen positions of an axis.
-std::vector<char> outside_of(const Observations& seen, const Observations& unseen) {
-  constexpr double margin = 0.02;
+/// `curved`: only of an axis over which a curve of the model is one.
+std::vector<char> outside_of(const Observations& seen, const Observations& unseen,
+                             const std::vector<Term>& model, bool curved) {
+  constexpr double margin = 0.02, rounding = 1e-6;  // of the range; m or rad
   std::vector<char> out(unseen.size(), 0);
   for (const auto& axis : unseen.axes) {
-    const std::vector<double>& known = seen.axis(axis.axis)->position;
-    const auto [low, high] = std::minmax_element(known.begin(), known.end());
-    const double more = margin * (*high - *low);
+    const auto* known = seen.axis(axis.axis);
+    if (known == nullptr || (curved && !has_curve_over(model, axis.axis))) continue;
+    const auto [low, high] = std::minmax_element(known->position.begin(), known->position.end());
+    const double more = margin * (*high - *low) + rounding;
     for (std::size_t i = 0; i < out.size(); ++i)
       if (axis.position[i] < *low - more || axis.position[i] > *high + more) out[i] = 1;
   }
   return out;
+}
+
+/// The readings of `o` that are not marked.
+Observations without_marked(Observations o, const std::vector<char>& marked) {
+  const auto keep = [&](auto& column) {
+    if (column.size() != marked.size()) return;
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < marked.size(); ++i)
+      if (marked[i] == 0) column[to++] = column[i];
+    column.resize(to);
+  };
+  for (auto& axis : o.axes) keep(axis.position), keep(axis.approach);
+  keep(o.deviation), keep(o.u), keep(o.line), keep(o.run), keep(o.time), keep(o.source_line);
+  keep(o.sense), keep(o.material), keep(o.air), keep(o.pressure), keep(o.humidity);
+  return o;
 }
 
 MatrixXd with(const MatrixXd& a, const MatrixXd& b) {
@@ -131,8 +156,20 @@ MatrixXd with(const MatrixXd& a, const MatrixXd& b) {
 }  // namespace
 
 Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& model,
-                                    const Part& unseen, const std::vector<Term>& set_up) {
+                                    const Part& all_unseen, const std::vector<Term>& set_up) {
   NONIO_TRY(const auto compared, compare(seen, model));
+  // A curve is not known outside of its range.
+  const auto far = outside_of(seen.table, all_unseen.table, model, false);
+  const auto unknown = outside_of(seen.table, all_unseen.table, model, true);
+  Prediction out;
+  out.outside = std::count(far.begin(), far.end(), 1) > 0;
+  out.left_out = static_cast<std::size_t>(std::count(unknown.begin(), unknown.end(), 1));
+  Part unseen = all_unseen;
+  unseen.table = without_marked(std::move(unseen.table), unknown);
+  if (unseen.table.size() == 0)
+    return fail("all " + std::to_string(out.left_out) +
+                " readings are outside the places that the model was fitted to, where its curves "
+                "are not known");
   NONIO_TRY(const Observations both, joined(seen.table, unseen.table));
   std::vector<Term> named, own, others = set_up;
   for (const Term& term : compared.fit.terms) {
@@ -168,45 +205,32 @@ Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& m
                                             MatrixXd::Identity(a.cols(), a.cols()));
   const MatrixXd covariance = s2 * cofactor.topLeftCorner(k, k);
 
-  // Predict the readings `unseen`, whose zeros and set-up are new unknowns. A curve says nothing
-  // outside of its range.
-  const bool curved =
-      std::any_of(named.begin(), named.end(), [](const Term& term) { return term.effect->curve; });
-  const std::vector<char> far = outside_of(seen.table, unseen.table);
-  std::vector<Index> rows;
-  Prediction out;
-  for (Index i = 0; i < m; ++i) {
-    const bool outside = far[static_cast<std::size_t>(i)] != 0;
-    out.outside = out.outside || outside;
-    if (outside && curved)
-      ++out.left_out;
-    else
-      rows.push_back(i);
-  }
-  const MatrixXd all_free = with(of_unseen.bottomRows(m), zeros_of(both, n, m));
-  const MatrixXd free = all_free(rows, Eigen::all);
+  // Predict the readings `unseen`, whose zeros and set-up are new unknowns.
+  const MatrixXd free = with(of_unseen.bottomRows(m), zeros_of(both, n, m));
   const Eigen::ColPivHouseholderQR<MatrixXd> decomposed(free);
-  const auto count = static_cast<Index>(rows.size());
-  if (count <= decomposed.rank())
-    return fail(std::to_string(out.left_out) + " of " + std::to_string(m) +
-                " readings lie outside the places that the model was fitted to, where its curves "
-                "are not known; expected more readings inside");
+  if (m <= decomposed.rank())
+    return fail(
+        "expected more readings than the zeros and the set-up of the other campaign have "
+        "unknowns" +
+        std::string(out.left_out == 0 ? ""
+                                      : "; " + std::to_string(out.left_out) +
+                                            " are outside the range of the curves"));
   const MatrixXd q = math::orthonormal(decomposed, decomposed.rank());
-  MatrixXd from = of_model.bottomRows(m)(rows, Eigen::all);
-  VectorXd readings = y.tail(m)(rows);
-  VectorXd error = math::residual(readings, from, x.head(k));
+  VectorXd error = math::residual(y.tail(m), of_model.bottomRows(m), x.head(k));
+  VectorXd readings = y.tail(m);
+  MatrixXd from = of_model.bottomRows(m);
   math::take_out(q, error), math::take_out(q, readings), math::take_out(q, from);
   const MatrixXd spread = math::product(from, covariance);
   std::size_t inside = 0;
-  for (Index i = 0; i < count; ++i) {
+  for (Index i = 0; i < m; ++i) {
     out.error.push_back(error(i));
     const double own_share = std::max(1.0 - q.row(i).squaredNorm(), 0.0);
     out.u.push_back(std::sqrt(s2 * own_share + spread.row(i).dot(from.row(i))));
     if (std::fabs(error(i)) <= 2.0 * out.u.back()) ++inside;
   }
-  out.rms = std::sqrt(error.squaredNorm() / static_cast<double>(count));
-  out.sd = std::sqrt(readings.squaredNorm() / static_cast<double>(count));
-  out.inside = static_cast<double>(inside) / static_cast<double>(count);
+  out.rms = std::sqrt(error.squaredNorm() / static_cast<double>(m));
+  out.sd = std::sqrt(readings.squaredNorm() / static_cast<double>(m));
+  out.inside = static_cast<double>(inside) / static_cast<double>(m);
   return out;
 }
 

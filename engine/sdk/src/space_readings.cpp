@@ -129,6 +129,11 @@ std::vector<double> places_of(const SpaceReadings& s, std::size_t k) {
   return places;
 }
 
+bool of_parts(const Observations& o) {
+  return !o.lines.empty() && std::all_of(o.lines.begin(), o.lines.end(),
+                                         [](const auto& line) { return !line.body.empty(); });
+}
+
 std::vector<double> knots_over(const std::vector<double>& places) {
   const std::size_t n = places.size();
   if (n < 6) return n < 4 ? std::vector<double>{} : std::vector<double>{2.0};

@@ -11,14 +11,15 @@
 namespace nonio::pitch_curve {
 
 /// Numbers of knots: at most 10, with at least three targets per two free values, so that the curve
-/// cannot follow single targets. `explain` omits curves that need more than half of the targets.
+/// cannot follow single targets; of features of a part, which repeat each position of an axis, also
+/// two for 4 or 5 positions. `explain` omits curves that need more than half of the targets.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr int fewest = 3, most = 10;
   constexpr std::size_t fewest_targets = 6;
   const auto r = readings_of(o, axis);
   if (!r) return {};
   const std::vector<double> targets = targets_of(*r);
-  if (o.axes.size() > 1 && targets.size() < fewest_targets) return knots_over(targets);
+  if (of_parts(o) && targets.size() < fewest_targets) return knots_over(targets);
   if (targets.size() < fewest_targets) return {};
   const int last = static_cast<int>(std::min<std::size_t>(targets.size() * 2 / 3, most + 1)) - 1;
   std::vector<double> knots;

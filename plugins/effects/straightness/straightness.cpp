@@ -58,7 +58,9 @@ SpaceReadings told(const Observations& o, const Name& name) {
 std::vector<double> grid(const Observations& o, const Axis& place) {
   const Name name = read(place.name);
   if (name.axis > 2 || name.error > 2) return {};
-  return knots_over(places_of(told(o, name), name.axis));
+  const std::vector<double> places = places_of(told(o, name), name.axis);
+  constexpr std::size_t fewest_places = 6;
+  return places.size() < fewest_places && !of_parts(o) ? std::vector<double>{} : knots_over(places);
 }
 
 Expected<Effect::Columns> columns(const Observations& o, const Axis& place,

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A machined part whose features were measured on a coordinate measuring machine.
 //     d = R (S m - p (1 + alpha (T2 - T1)) + v x p)
-// S, v: rotation that brings the measured features onto the nominal ones, and its vector, so that d
-// contains the rotation in its first order, as body-turn does; p, m: nominal and measured position of a feature in the part, m; R: rotation of the part on the
-// table about Z; d: error of the machine at the position origin + R p of the feature; T1, T2:
-// temperature of the part during machining, and reference temperature of the measurement. Position
-// and rotation of the part are unknown, and so is its size without temperatures (effects body-turn
-// and body-size). Sign: a hole is at the actual position of the machine.
+// v: vector of the rotation of the measured features against the nominal ones, S: the inverse of
+// this rotation, so that d contains it in its first order, as body-turn does; p, m: nominal and
+// measured position of a feature in the part, m; R: rotation of the part on the table about Z; d:
+// error of the machine at the position origin + R p of the feature; T1, T2: temperature of the part
+// during machining, and reference temperature of the measurement. Position and rotation of the part
+// are unknown, and so is its size without temperatures (effects body-turn and body-size). Sign: a
+// hole is at the actual position of the machine.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -59,10 +60,27 @@ struct Placed {
   Vector turn{}, shift{};
 };
 
-/// The rotation is one about Z, and also about X and Y if a feature has all three coordinates. A
-/// linear model would take the square of some mrad for a scale of 10 um/m.
+using Places = std::vector<std::pair<Vector, Vector>>;  // nominal and measured
+
+/// Whether the nominal places determine a rotation about each axis: they are not on one line.
+bool has_volume(const Places& places) {
+  for (std::size_t i = 1; i < places.size(); ++i)
+    for (std::size_t k = i + 1; k < places.size(); ++k) {
+      const auto& [zero, ignored] = places[0];
+      Vector a{}, b{};
+      for (std::size_t c = 0; c < 3; ++c)
+        a[c] = places[i].first[c] - zero[c], b[c] = places[k].first[c] - zero[c];
+      const Vector normal = cross(a, b);
+      const double area = std::hypot(normal[0], normal[1], normal[2]);
+      if (area > 1e-3 * std::hypot(a[0], a[1], a[2]) * std::hypot(b[0], b[1], b[2])) return true;
+    }
+  return false;
+}
+
+/// The rotation is one about Z, and also about X and Y if features have all three coordinates. A
+/// linear model would take half the square of some mrad for a scale of 10 um/m.
 Placed placed(const Readings& r) {
-  std::vector<std::pair<Vector, Vector>> places;
+  Places places;
   const auto take = [&](std::size_t count) {
     for (std::size_t i = 0; i < r.size(); ++i) {
       std::pair<Vector, Vector> one{};
@@ -76,8 +94,8 @@ Placed placed(const Readings& r) {
     }
   };
   take(3);
-  const bool flat = places.empty();
-  if (flat) take(2);
+  bool flat = !has_volume(places);
+  if (flat) places.clear(), take(2);
   Vector p0{}, m0{};
   for (const auto& [p, m] : places)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -102,7 +120,6 @@ Placed placed(const Readings& r) {
     if (!flat) {
       const Vector x = cross(a[1], a[2]), y = cross(a[2], a[0]), z = cross(a[0], a[1]);
       const double volume = a[0][0] * x[0] + a[0][1] * x[1] + a[0][2] * x[2];
-      if (!(volume > 1e-9 * a[0][0] * a[1][1] * a[2][2])) return {};
       for (std::size_t k = 0; k < 3; ++k) w[k] = (x[k] * b[0] + y[k] * b[1] + z[k] * b[2]) / volume;
     }
     for (std::size_t k = 0; k < 3; ++k) v[k] += w[k];

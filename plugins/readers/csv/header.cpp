@@ -145,6 +145,21 @@ bool Header::has(Role role) const {
   return std::find(roles.begin(), roles.end(), role) != roles.end();
 }
 
+namespace {
+
+/// Whether this is the name of a column, and no slip of one of `names`.
+bool is_of_another_kind(std::string_view name, const std::vector<std::string_view>& names) {
+  constexpr std::size_t slip = 2;
+  const auto belongs = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  return name.find('_') != name.npos && std::all_of(name.begin(), name.end(), belongs) &&
+         std::none_of(names.begin(), names.end(),
+                      [&](std::string_view known) { return edit_distance(name, known) <= slip; });
+}
+
+}  // namespace
+
 Expected<StatedColumns> StatedColumns::of(const std::vector<std::string>& entries,
                                           std::vector<std::string_view> names) {
   if (names.empty())
@@ -155,8 +170,10 @@ Expected<StatedColumns> StatedColumns::of(const std::vector<std::string>& entrie
     const auto name = trimmed(std::string_view(entry).substr(0, std::min(equals, entry.size())));
     const auto known = equals == entry.npos ? std::string_view()
                                             : trimmed(std::string_view(entry).substr(equals + 1));
-    if (name.empty() ||
-        (known != ignore && std::find(names.begin(), names.end(), known) == names.end())) {
+    const bool is_known =
+        known == ignore || std::find(names.begin(), names.end(), known) != names.end();
+    if (!name.empty() && !is_known && is_of_another_kind(known, names)) continue;
+    if (name.empty() || !is_known) {
       std::string list;
       for (const std::string_view one : names) list += std::string(one) + ", ";
       const std::string first(names.front());
@@ -183,7 +200,10 @@ std::string_view StatedColumns::known(std::string_view name, std::size_t index) 
 bool StatedColumns::all_in(const std::vector<std::string_view>& row) const {
   const bool has_name =
       std::any_of(names_.begin(), names_.end(), [](const Stated& one) { return one.number == 0; });
+  const bool only_ignores = std::all_of(names_.begin(), names_.end(),
+                                        [](const Stated& one) { return one.known == ignore; });
   return std::all_of(names_.begin(), names_.end(), [&](const Stated& one) {
+    if (one.known == ignore && one.number == 0 && !only_ignores) return true;
     // The last names of a row may be blank.
     if (one.number != 0) return has_name || one.number <= row.size();
     return std::any_of(row.begin(), row.end(),

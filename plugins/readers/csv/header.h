@@ -39,7 +39,8 @@ inline constexpr std::string_view ignore = "ignore";
 class StatedColumns {
  public:
   /// Parses entries such as "Soll mm = target_mm". `names`: known names; without them those of
-  /// readings of an axis. Error: any other form.
+  /// readings of an axis. An entry for the columns of another kind of measurement, to which the same
+  /// option belongs, is omitted. Error: any other form.
   static Expected<StatedColumns> of(const std::vector<std::string>& entries,
                                     std::vector<std::string_view> names = {});
   bool empty() const { return names_.empty(); }

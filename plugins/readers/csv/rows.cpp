@@ -112,14 +112,19 @@ ColumnSpec::Kind kind_of(const Method::Column& column) {
 
 }  // namespace
 
+Expected<StatedColumns> stated_columns(const ReadInput& input) {
+  std::vector<std::string> declared;
+  if (input.method != nullptr)
+    for (const Method::Column& c : input.method->columns) declared.push_back(name_in_file(c));
+  return StatedColumns::of(input.options.texts(columns_option), {declared.begin(), declared.end()});
+}
+
 Expected<Observations> read_declared(const ReadInput& input) {
   const Method& method = *input.method;
   std::vector<ColumnSpec> columns;
   for (const Method::Column& c : method.columns)
     columns.push_back({name_in_file(c), kind_of(c), c.required});
-  std::vector<std::string_view> names;
-  for (const ColumnSpec& c : columns) names.push_back(c.name);
-  NONIO_TRY(const auto stated, StatedColumns::of(input.options.texts(columns_option), names));
+  NONIO_TRY(const auto stated, stated_columns(input));
   NONIO_TRY(auto table, in_file(read_table(input.bytes, columns, &stated), input));
   Readings readings;
   readings.source_line = std::move(table.line);

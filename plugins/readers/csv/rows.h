@@ -36,6 +36,9 @@ Expected<Observations> complete(Observations obs);
 
 Error at_line(std::uint64_t line, std::string column, std::string message);
 
+/// Option `columns` with the names that the method of the measurement declares.
+Expected<StatedColumns> stated_columns(const ReadInput& input);
+
 Expected<Table> table_of(const ReadInput& input, const std::vector<ColumnSpec>& columns);
 
 template <class T>

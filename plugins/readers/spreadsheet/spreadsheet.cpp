@@ -7,6 +7,7 @@
 #include "csv.h"
 #include "header.h"
 #include "nonio/sdk/format.h"
+#include "rows.h"
 #include "sheet.h"
 
 namespace nonio::spreadsheet {
@@ -84,7 +85,7 @@ std::string names_of(const std::vector<Sheet>& sheets) {
 
 Expected<Table> chosen(const Book& book, const ReadInput& input) {
   const std::string wanted = input.options.text("sheet");
-  NONIO_TRY(auto stated, csv::StatedColumns::of(input.options.texts(csv::columns_option)));
+  NONIO_TRY(auto stated, csv::stated_columns(input));
   const Wanted names{input.method, std::move(stated)};
   std::vector<Table> found;
   for (const Sheet& sheet : book.sheets) {

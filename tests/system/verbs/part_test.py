@@ -96,7 +96,7 @@ class Part(unittest.TestCase):
         self.assertTrue({"scale:X", "scale:Y"} <= set(answer["together"]), answer["together"])
 
     def test_a_frame_that_is_turned_is_no_scale(self):
-        """Of 9 mrad the square is 40 um/m: eight times the U of a scale."""
+        """Half the square of 9 mrad is 40 um/m: eight times the U of a scale."""
         self.rng = random.Random(13)
         for k, parts in enumerate(((("P1", 0),), (("P1", 0), ("P2", 90)))):
             answer = self.explain(self.campaign(str(k), "none", parts=parts, known=True, turn=9e-3))

@@ -69,9 +69,12 @@ bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::siz
 /// closer than 1e-9 of the length are one.
 std::vector<double> places_of(const SpaceReadings& s, std::size_t k);
 
+/// Whether the readings are features of parts.
+bool of_parts(const Observations& o);
+
 /// Returns numbers of knots for a smooth curve: from 3 to at most 10, with at least two places per
 /// free value, so that the curve cannot follow single places; 2 for 4 or 5 places, which the curve
-/// follows closely (other coordinates repeat them). Empty for fewer places.
+/// follows closely, so use it only where other readings repeat them. Empty for fewer places.
 std::vector<double> knots_over(const std::vector<double>& places);
 
 /// The readings of one line in space. Readings for which other coordinates are stated than for the
