@@ -368,9 +368,7 @@ std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects
 std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>& effects) {
   std::vector<Candidate> out;
   // No column of a file can state how a machine made the features of a part.
-  const bool of_a_body =
-      !part.table.lines.empty() && std::all_of(part.table.lines.begin(), part.table.lines.end(),
-                                               [](const auto& line) { return !line.body.empty(); });
+  const bool of_a_body = of_parts(part.table);
   for (const Effect& effect : effects) {
     if (effect.is_nuisance || effect.description || !effect.why_not) continue;
     for (const std::string& of : offered_by(part, effect)) {

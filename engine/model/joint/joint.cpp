@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <random>
 
 #include "diagnosis/plans.h"
 #include "diagnosis/verdict.h"
 #include "fit/weights.h"
-#include "joint/system.h"
+#include "joint/joint_search.h"
 #include "nonio/math/distributions.h"
 #include "search/finding.h"
 
@@ -18,34 +16,16 @@ namespace nonio::model {
 
 namespace {
 
-constexpr std::size_t most_effects = 8;
-// Smallest RMS of a named effect, as a fraction of the noise: docs/dev/constants.md, M46.
-constexpr double least_joint_rms = 0.1;
-// p of differences, and share of flipped copies that differ as much: docs/dev/constants.md, M47.
-constexpr double differs_below = 0.001, as_much_as_noise = 0.01;
-constexpr Index shuffles = 200;  // half by stretches, half by whole passes
-// With many campaigns, the date of a change is searched in steps, then between them.
-constexpr std::size_t most_dates = 32;
-
-class JointSearch {
+/// What a search has found, with values, p, plans and a verdict.
+class JointReport {
  public:
-  JointSearch(const std::vector<Member>& members, const JointReadings& readings, std::uint64_t seed)
-      : of_(members), r_(readings), system_(readings), seed_(seed) {
-    for (const MemberReadings& m : r_.members) {
-      y_.emplace_back(m.y);
-      dof_ += m.dof;
-      noise2_ += m.readings * m.s * m.s;
-    }
-    noise2_ /= system_.readings();
-  }
+  JointReport(const std::vector<Member>& members, const JointReadings& readings,
+              const JointSearch& search)
+      : of_(members), r_(readings), search_(search) {}
 
-  JointExplanation run() {
+  JointExplanation made() const {
     JointExplanation out;
     put_candidates(out);
-    find();
-    prefer_pairs();
-    prune();
-    settle_differences();
     put_effects(out);
     put_plans(out);
     put_campaigns(out);
@@ -54,331 +34,13 @@ class JointSearch {
   }
 
  private:
-  using Choices = std::vector<Choice>;
-  struct Scored {
-    Choice choice;
-    double evidence = -std::numeric_limits<double>::infinity();
-  };
-
-  /// The best block, with the best `Holds`, of each effect that is not in `choices`.
-  std::map<std::string, Scored> scored(const Choices& choices, const std::string& only = "") const {
-    const auto gains = system_.gains(choices, y_);
-    std::map<std::string, Scored> best;
-    for (std::size_t b = 0; b < r_.blocks.size(); ++b) {
-      const JointBlock& block = r_.blocks[b];
-      if (block.count == 0 || (!only.empty() && block.effect != only)) continue;
-      const auto row = static_cast<Index>(b);
-      const double price = system_.price_of(block);
-      Scored& known = best[block.effect];
-      const auto offer = [&](Holds holds, double evidence) {
-        if (evidence > known.evidence) known = {{b, holds}, evidence};
-      };
-      offer(Holds::shared, gains.shared(row, 0) - price -
-                               static_cast<double>(block.count) * std::log(system_.readings()));
-      offer(Holds::own, gains.own(row, 0) - price - gains.own_price[b]);
-    }
-    for (const Choice& c : choices) best.erase(r_.blocks[c.block].effect);
-    return best;
-  }
-
-  /// Among nearly equal effects, returns that with the fewest unknowns.
-  Scored simplest(const std::map<std::string, Scored>& all) const {
-    Scored best;
-    for (const auto& [effect, one] : all)
-      if (one.evidence > best.evidence) best = one;
-    const double least = best.evidence - alias_evidence;
-    const auto unknowns = [&](const Scored& one) {
-      const JointBlock& block = r_.blocks[one.choice.block];
-      return block.count + block.searched;
-    };
-    for (const auto& [effect, one] : all)
-      if (one.evidence > least && unknowns(one) < unknowns(best)) best = one;
-    return best;
-  }
-
-  void find() {
-    while (choices_.size() < most_effects) {
-      const Scored best = simplest(scored(choices_));
-      if (!(best.evidence > 0.0)) return;
-      choices_.push_back(best.choice);
-      if (!system_.solve(choices_).sound) {
-        choices_.pop_back();
-        return;
-      }
-      settle();
-      prefer_simpler();
-    }
-  }
-
-  /// Replaces an effect by one with fewer unknowns that explains the readings equally well.
-  void prefer_simpler() {
-    const auto unknowns = [&](std::size_t b) { return r_.blocks[b].count + r_.blocks[b].searched; };
-    for (std::size_t i = 0; i < choices_.size(); ++i)
-      for (const auto& [effect, one] : scored(without(choices_, i))) {
-        if (unknowns(one.choice.block) >= unknowns(choices_[i].block)) continue;
-        const Choices before = choices_;
-        const double least = criterion(choices_) + alias_evidence;
-        choices_[i] = one.choice;
-        settle(i);
-        if (!(criterion(choices_) < least)) choices_ = before;
-      }
-  }
-
-  /// Replaces an effect with searched shapes by two others, if they explain the readings better: a
-  /// warm-up with its fixed point imitates a growth about one end, which is a growth and a drift.
-  void prefer_pairs() {
-    for (std::size_t i = 0; i < choices_.size();) {
-      const std::size_t next = i + 1;
-      if (r_.blocks[choices_[i].block].searched == 0 || choices_.size() >= most_effects) {
-        i = next;
-        continue;
-      }
-      const Choices before = choices_;
-      const std::string effect = r_.blocks[before[i].block].effect;
-      choices_ = without(before, i);
-      bool added = true;
-      for (int k = 0; k < 2 && added; ++k) {
-        auto all = scored(choices_);
-        all.erase(effect);
-        const Scored best = simplest(all);
-        added = best.evidence > 0.0;
-        if (!added) break;
-        choices_.push_back(best.choice);
-        settle();
-      }
-      // Where it was replaced, another effect is at i now.
-      if (!added || !(criterion(choices_) < criterion(before))) choices_ = before, i = next;
-    }
-  }
-
-  static Choices without(Choices choices, std::size_t i) {
-    choices.erase(choices.begin() + static_cast<std::ptrdiff_t>(i));
-    return choices;
-  }
-
-  /// Blocks of this curve with more knots that all of its members determine, most first, and the
-  /// block itself. What a curve with few
-  /// knots leaves is the same in all campaigns and must not look like another effect, or, where
-  /// campaigns measure other parts of the travel, like a difference.
-  std::vector<std::size_t> finer(std::size_t block) const {
-    std::vector<std::size_t> out{block};
-    const auto lack = [&](std::size_t b) {
-      return std::any_of(r_.members.begin(), r_.members.end(), [&](const MemberReadings& m) {
-        return m.first[block] >= 0 && m.first[b] < 0;
-      });
-    };
-    for (std::size_t b = 0; b < r_.blocks.size() && r_.blocks[block].is->curve; ++b)
-      if (r_.blocks[b].effect == r_.blocks[block].effect &&
-          r_.blocks[b].count > r_.blocks[block].count && !lack(b))
-        out.push_back(b);
-    std::stable_sort(out.begin(), out.end(), [&](std::size_t one, std::size_t other) {
-      return r_.blocks[one].count > r_.blocks[other].count;
-    });
-    return out;
-  }
-
-  /// The choices with as many knots of curves as the readings determine, except that of effect `i`.
-  Choices with_all_knots(Choices choices, std::size_t except) const {
-    for (std::size_t i = 0; i < choices.size(); ++i) {
-      if (i == except) continue;
-      for (const std::size_t b : finer(choices[i].block)) {
-        choices[i].block = b;
-        if (system_.solve(choices).sound) break;
-      }
-    }
-    return choices;
-  }
-
-  double criterion(const Choices& choices) const {
-    const auto s = system_.solve(choices);
-    return s.sound ? s.criterion() : std::numeric_limits<double>::infinity();
-  }
-
-  /// Searches shapes and `holds` of each effect again with the others fixed, at most four times.
-  void settle() {
-    for (int round = 0; round < 4; ++round) {
-      bool any = false;
-      for (std::size_t i = 0; i < choices_.size(); ++i) any = settle(i) || any;
-      if (!any) return;
-    }
-  }
-
-  /// Returns whether the shape, `holds` or the date of the effect changed.
-  bool settle(std::size_t i) {
-    const Choice before = choices_[i];
-    const std::string effect = r_.blocks[before.block].effect;
-    const auto best = scored(without(choices_, i), effect);
-    if (const auto found = best.find(effect); found != best.end())
-      choices_[i] = found->second.choice;
-    if (criterion(choices_) > 1e300) choices_[i] = before;
-    choices_[i].holds = Holds::shared;
-    const bool differs = p_same(i) < differs_below;
-    if (differs || criterion(choices_) > 1e300) {
-      choices_[i].holds = Holds::own;
-      if (differs) look_for_date(i);
-    }
-    const Choice& now = choices_[i];
-    return now.block != before.block || now.holds != before.holds || now.after != before.after;
-  }
-
-  /// One change between two campaigns replaces separate values, if it reduces the criterion and
-  /// leaves no other significant difference.
-  void look_for_date(std::size_t i) {
-    const std::size_t n = r_.members.size();
-    const Choice own = choices_[i];
-    if (n < 3 || std::any_of(of_.begin(), of_.end(),
-                             [&](const Member& m) { return m.machine != of_.front().machine; }))
-      return;
-    double least = criterion(choices_);
-    const auto offer = [&](std::size_t after) {
-      Choices other = choices_;
-      other[i].holds = Holds::changed, other[i].after = after;
-      const double now = criterion(other);
-      if (now < least) choices_ = std::move(other), least = now;
-    };
-    const std::size_t step = std::max<std::size_t>(1, (n - 1) / most_dates);
-    for (std::size_t after = 1; after < n; after += step) offer(after);
-    if (choices_[i].holds != Holds::changed) return;
-    const std::size_t about = choices_[i].after;
-    for (std::size_t k = 1; k < step; ++k) {
-      if (about > k) offer(about - k);
-      if (about + k < n) offer(about + k);
-    }
-    if (p_same(i) < differs_below) choices_[i] = own;
-  }
-
-  /// p of the differences between campaigns beyond those that the choice allows.
-  double p_same(std::size_t i) const {
-    Choices same = with_all_knots(choices_, i);
-    for (const std::size_t b : finer(choices_[i].block)) {
-      same[i].block = b;
-      Choices own = same;
-      own[i].holds = Holds::own;
-      const auto one = system_.solve(same), each = system_.solve(own);
-      if (!one.sound || !each.sound) continue;
-      const auto q = static_cast<double>(each.parameters - one.parameters);
-      return q >= 1.0 ? math::f_upper((one.squares - each.squares) / q, q, dof_) : 1.0;
-    }
-    return 1.0;
-  }
-
-  /// F-test against the noise of the repeats, corrected for the dates of a change only.
-  double p_of(const Choices& chosen, std::size_t i) const {
-    const Choices choices = with_all_knots(chosen, i);
-    const auto all = system_.solve(choices), rest = system_.solve(without(choices, i));
-    const JointBlock& block = r_.blocks[choices[i].block];
-    const auto q = static_cast<double>(all.parameters - rest.parameters + block.searched);
-    const double p = math::f_upper((rest.squares - all.squares) / q, q, dof_);
-    const auto dates = static_cast<double>(r_.members.size() - 1);
-    return choices[i].holds == Holds::changed ? std::min(1.0, dates * p) : p;
-  }
-
-  double weight_of(const Choice& choice) const { return r_.blocks[choice.block].weight; }
-
-  double size_of(const Choices& choices, std::size_t i) const {
-    const double fall = system_.solve(without(choices, i)).squares - system_.solve(choices).squares;
-    return std::sqrt(std::max(fall, 0.0) * noise2_ / system_.readings());
-  }
-
-  /// Copies of the residuals, one per column, with random signs: of short stretches in even
-  /// columns, of whole passes in odd ones. They have the expected size of the noise, because the
-  /// fit makes residuals smaller.
-  std::vector<MatrixXd> flipped() const {
-    const auto left = system_.residuals(choices_, system_.solve(choices_));
-    std::mt19937_64 random(seed_);
-    std::vector<MatrixXd> out;
-    for (std::size_t m = 0; m < left.size(); ++m) {
-      const MemberReadings& member = r_.members[m];
-      const double free = std::max(member.readings - static_cast<double>(member.unknowns), 1.0);
-      const VectorXd e = left[m] * std::sqrt(member.readings / free);
-      MatrixXd noise(e.size(), shuffles);
-      for (Index k = 0; k < shuffles; ++k) {
-        const std::size_t stretch = k % 2 == 0 ? stretch_of_signs : whole_pass;
-        std::map<std::pair<std::uint32_t, std::size_t>, double> sign;
-        std::map<std::uint32_t, std::size_t> in_pass;
-        for (Index i = 0; i < e.size(); ++i) {
-          const std::uint32_t pass = member.pass[static_cast<std::size_t>(i)];
-          const auto [at, is_new] = sign.try_emplace({pass, in_pass[pass]++ / stretch}, 0.0);
-          if (is_new) at->second = (random() & 1) != 0 ? 1.0 : -1.0;
-          noise(i, k) = at->second * e(i);
-        }
-      }
-      out.push_back(std::move(noise));
-    }
-    return out;
-  }
-
-  /// The largest number of independent tests that gives the observed median or 5 % quantile of the
-  /// smallest p of a copy, with flipped stretches or with flipped passes.
-  double trials_of(const JointSystem::Gains& gains, bool weighted) const {
-    std::vector<double> least[2];
-    for (Index k = 0; k < shuffles; ++k) {
-      double p = 1.0;
-      for (std::size_t b = 0; b < r_.blocks.size(); ++b) {
-        const auto row = static_cast<Index>(b);
-        const auto test = [&](double fall, Index parameters) {
-          const auto q = static_cast<double>(parameters + r_.blocks[b].searched);
-          if (std::isfinite(fall) && q >= 1.0)
-            p = std::min(p,
-                         math::f_upper(fall / q, q, dof_) / (weighted ? r_.blocks[b].weight : 1.0));
-        };
-        test(gains.shared(row, k), r_.blocks[b].count);
-        test(gains.own(row, k), gains.own_parameters[b]);
-      }
-      least[k % 2].push_back(p);
-    }
-    double trials = 1.0;
-    for (auto& list : least) {
-      std::sort(list.begin(), list.end());
-      for (const double share : {0.05, 0.5}) {
-        const double p = list[static_cast<std::size_t>(share * static_cast<double>(list.size()))];
-        trials = std::max(trials, std::log1p(-share) / std::log1p(-std::clamp(p, 1e-15, 0.999)));
-      }
-    }
-    return trials;
-  }
-
-  /// Removes effects that are not significant or too small.
-  void prune() {
-    while (true) {
-      const auto gains = system_.gains(choices_, flipped());
-      chance_.trials = trials_of(gains, true), unweighted_.trials = trials_of(gains, false);
-      std::size_t weakest = choices_.size();
-      double largest = 0.0;
-      for (std::size_t i = 0; i < choices_.size(); ++i) {
-        const double p = chance_.corrected(p_of(choices_, i) / weight_of(choices_[i]));
-        const bool small = size_of(choices_, i) < least_joint_rms * std::sqrt(noise2_);
-        if ((p >= named_below || small) && p >= largest) weakest = i, largest = p;
-      }
-      if (weakest == choices_.size()) return;
-      choices_ = without(choices_, weakest);
-      settle();
-    }
-  }
-
-  /// An effect gets one shared value if more than 1 % of the flipped copies reach its differences.
-  void settle_differences() {
-    for (std::size_t i = 0; i < choices_.size(); ++i) {
-      if (choices_[i].holds == Holds::shared) continue;
-      const auto gains = system_.gains(without(choices_, i), flipped());
-      Choices shared = choices_, own = choices_;
-      shared[i] = {choices_[i].block, Holds::shared}, own[i] = {choices_[i].block, Holds::own};
-      const auto a = system_.solve(shared), b = system_.solve(own);
-      if (!a.sound || !b.sound) continue;
-      const auto row = static_cast<Index>(choices_[i].block);
-      double as_much = 0.0;
-      for (Index k = 0; k < shuffles; ++k)
-        as_much += gains.own(row, k) - gains.shared(row, k) >= a.squares - b.squares ? 1.0 : 0.0;
-      if (as_much > as_much_as_noise * static_cast<double>(shuffles)) choices_ = shared;
-    }
-  }
-
   void put_candidates(JointExplanation& out) const {
-    for (const auto& [effect, one] : scored({})) {
-      if (!(one.evidence > -1e300) || !system_.solve({one.choice}).sound) continue;
+    for (const auto& [effect, one] : search_.scored({})) {
+      if (!(one.evidence > -1e300) || !search_.system().solve({one.choice}).sound) continue;
       out.candidates.push_back(described({one.choice}, 0));
-      out.candidates.back().evidence = one.evidence - evidence_of_weight(weight_of(one.choice));
-      out.candidates.back().weight = weight_of(one.choice);
+      out.candidates.back().evidence =
+          one.evidence - evidence_of_weight(search_.weight_of(one.choice));
+      out.candidates.back().weight = search_.weight_of(one.choice);
     }
     std::stable_sort(out.candidates.begin(), out.candidates.end(),
                      [](const JointEffect& a, const JointEffect& b) {
@@ -391,22 +53,22 @@ class JointSearch {
     double squares = 0.0;
     for (std::size_t m = 0; m < left.size(); ++m)
       squares += left[m].squaredNorm() * r_.members[m].s * r_.members[m].s;
-    return std::sqrt(squares / system_.readings());
+    return std::sqrt(squares / search_.system().readings());
   }
 
   JointEffect described(const Choices& choices, std::size_t i) const {
     const Choice& c = choices[i];
     const JointBlock& block = r_.blocks[c.block];
-    const auto solution = system_.solve_with_estimated_noise(choices);
+    const auto solution = search_.system().solve_with_estimated_noise(choices);
     JointEffect out{.effect = block.effect, .holds = c.holds, .after = c.after};
-    out.size = size_of(choices, i);
-    out.rms = rms_of(system_.residuals(choices, solution));
-    out.p = p_of(choices, i);
+    out.size = search_.size_of(choices, i);
+    out.rms = rms_of(search_.system().residuals(choices, solution));
+    out.p = search_.p_of(choices, i);
     const std::size_t groups = c.holds == Holds::shared    ? 1
                                : c.holds == Holds::changed ? 2
                                                            : r_.members.size();
     for (std::size_t g = 0; g < groups; ++g) {
-      const auto [value, covariance] = system_.values(choices, solution, i, g);
+      const auto [value, covariance] = search_.system().values(choices, solution, i, g);
       std::vector<Parameter> list;
       for (Index k = 0; k < value.size(); ++k) {
         const Effect& e = *block.is;
@@ -429,53 +91,48 @@ class JointSearch {
   /// Adds to u what the searched shapes of the effect permit: the mean over all shapes, weighted by
   /// their likelihood, of the squared distances from the printed values.
   void add_shapes(JointEffect& effect, std::size_t i) const {
-    const JointBlock& named = r_.blocks[choices_[i].block];
+    const JointBlock& named = r_.blocks[search_.choices()[i].block];
     if (named.searched == 0) return;
     constexpr double out_of_sight = 25.0;  // of -2 ln of the likelihood
-    const auto gains = system_.gains(without(choices_, i), y_);
-    const MatrixXd& gain = choices_[i].holds == Holds::own ? gains.own : gains.shared;
-    const double best = gain(static_cast<Index>(choices_[i].block), 0);
-    struct Other {
-      double weight;
-      std::vector<std::vector<double>> variance;  // of each group and parameter
-    };
-    std::vector<Other> others;
+    const auto gains = search_.system().gains(without(search_.choices(), i), search_.y());
+    const MatrixXd& gain = search_.choices()[i].holds == Holds::own ? gains.own : gains.shared;
+    const double best = gain(static_cast<Index>(search_.choices()[i].block), 0);
+    const double least = search_.criterion(search_.choices());
+    std::vector<std::vector<double>> squares;  // of each group and parameter
+    for (const auto& group : effect.groups) squares.emplace_back(group.size(), 0.0);
     double weights = 0.0;
-    const double least = criterion(choices_);
     for (std::size_t b = 0; b < r_.blocks.size(); ++b) {
       const JointBlock& block = r_.blocks[b];
       if (block.effect != named.effect || block.count != named.count ||
           !(gain(static_cast<Index>(b), 0) > best - out_of_sight))
         continue;
-      Choices choices = choices_;
+      Choices choices = search_.choices();
       choices[i].block = b;
-      const auto solution = system_.solve(choices);
+      const auto solution = search_.system().solve(choices);
       if (!solution.sound) continue;
-      Other other{std::exp(-0.5 * (solution.criterion() - least)), {}};
+      const double weight = std::exp(-0.5 * (solution.criterion() - least));
+      weights += weight;
       for (std::size_t g = 0; g < effect.groups.size(); ++g) {
-        const auto value = system_.values(choices, solution, i, g).first;
-        other.variance.emplace_back();
-        std::size_t linear = 0, shape = 0;
-        for (const Parameter& p : effect.groups[g]) {
-          const double now = p.shape ? block.shape[shape++]
-                             : linear < static_cast<std::size_t>(value.size())
-                                 ? value(static_cast<Index>(linear++))
-                                 : p.value;
-          other.variance.back().push_back((now - p.value) * (now - p.value));
+        const VectorXd value = search_.system().values(choices, solution, i, g).first;
+        Index linear = 0;
+        std::size_t shape = 0;
+        for (std::size_t k = 0; k < effect.groups[g].size(); ++k) {
+          const Parameter& p = effect.groups[g][k];
+          const double now = p.shape                 ? block.shape[shape++]
+                             : linear < value.size() ? value(linear++)
+                                                     : p.value;
+          squares[g][k] += weight * (now - p.value) * (now - p.value);
         }
       }
-      weights += other.weight;
-      others.push_back(std::move(other));
     }
     for (std::size_t g = 0; g < effect.groups.size(); ++g)
       for (std::size_t k = 0; k < effect.groups[g].size(); ++k) {
-        double variance = 0.0;
-        for (const Other& other : others) variance += other.weight / weights * other.variance[g][k];
         Parameter& p = effect.groups[g][k];
+        const double u = std::sqrt(squares[g][k] / weights);
         if (!p.shape)
-          p.u = std::hypot(p.u, std::sqrt(variance));
-        else if (variance > 0.0)
-          p.u = std::sqrt(variance);
+          p.u = std::hypot(p.u, u);
+        else if (u > 0.0)
+          p.u = u;
       }
   }
 
@@ -483,31 +140,33 @@ class JointSearch {
   bool changes_as_well(Choices rest, const Choice& named, Choice other, double least) const {
     other.holds = named.holds, other.after = named.after;
     rest.push_back(other);
-    return criterion(rest) < least + alias_evidence;
+    return search_.criterion(rest) < least + alias_evidence;
   }
 
   void put_effects(JointExplanation& out) const {
-    const double all = criterion(choices_);
-    for (std::size_t i = 0; i < choices_.size(); ++i) {
-      JointEffect effect = described(choices_, i);
+    const double all = search_.criterion(search_.choices());
+    for (std::size_t i = 0; i < search_.choices().size(); ++i) {
+      JointEffect effect = described(search_.choices(), i);
       add_shapes(effect, i);
-      effect.p = unweighted_.corrected(effect.p);
-      effect.weight = weight_of(choices_[i]);
-      const Choices rest = without(choices_, i);
-      const double before = criterion(rest);
+      effect.p = search_.unweighted().corrected(effect.p);
+      effect.weight = search_.weight_of(search_.choices()[i]);
+      const Choices rest = without(search_.choices(), i);
+      const double before = search_.criterion(rest);
       const double evidence = before - all;
       effect.evidence = evidence - evidence_of_weight(effect.weight);
-      for (const auto& [name, one] : scored(rest))
-        if (name != effect.effect && (one.evidence > evidence - alias_evidence ||
-                                      (effect.holds == Holds::changed &&
-                                       changes_as_well(rest, choices_[i], one.choice, all))))
+      for (const auto& [name, one] : search_.scored(rest))
+        if (name != effect.effect &&
+            (one.evidence > evidence - alias_evidence ||
+             (effect.holds == Holds::changed &&
+              changes_as_well(rest, search_.choices()[i], one.choice, all))))
           effect.aliases.push_back(name);
       out.effects.push_back(std::move(effect));
     }
   }
 
   void put_campaigns(JointExplanation& out) const {
-    const auto left = system_.residuals(choices_, system_.solve(choices_));
+    const auto left =
+        search_.system().residuals(search_.choices(), search_.system().solve(search_.choices()));
     std::vector<VectorXd> before;
     for (std::size_t m = 0; m < left.size(); ++m) {
       const MemberReadings& member = r_.members[m];
@@ -524,8 +183,8 @@ class JointSearch {
     }
     out.rms = rms_of(before);
     out.rms_after = rms_of(left);
-    out.noise = std::sqrt(noise2_);
-    out.trials = unweighted_.trials;
+    out.noise = std::sqrt(search_.noise2());
+    out.trials = search_.unweighted().trials;
   }
 
   /// By column of `y`: sum of n times the squared mean over cells with n >= 2 weighted readings.
@@ -549,19 +208,20 @@ class JointSearch {
   /// Tests whether the cell means differ from the model by more than the scatter of passes.
   void judge(JointExplanation& out) const {
     std::vector<MatrixXd> left;
-    for (const VectorXd& e : system_.residuals(choices_, system_.solve(choices_)))
+    for (const VectorXd& e :
+         search_.system().residuals(search_.choices(), search_.system().solve(search_.choices())))
       left.emplace_back(e);
     const double found = of_cells(left)(0);
-    const VectorXd chance = of_cells(flipped());
+    const VectorXd chance = of_cells(search_.flipped());
     double mean = 0.0, squares = 0.0, n = 0.0;
     // Odd columns of `flipped` have flipped signs of whole passes.
-    for (Index k = 1; k < shuffles; k += 2) mean += chance(k), ++n;
+    for (Index k = 1; k < flipped_copies; k += 2) mean += chance(k), ++n;
     mean /= n;
-    for (Index k = 1; k < shuffles; k += 2) squares += std::pow(chance(k) - mean, 2);
+    for (Index k = 1; k < flipped_copies; k += 2) squares += std::pow(chance(k) - mean, 2);
     const double s = std::sqrt(squares / (n - 1.0));
     const double t = math::test_ratio(found - mean, s);
     out.p_left = t > 0.0 ? 0.5 * math::t_two_sided(t, n - 1.0) : 1.0;
-    const double size = std::sqrt(std::max(found - mean, 0.0) / system_.readings());
+    const double size = std::sqrt(std::max(found - mean, 0.0) / search_.system().readings());
     out.explains_all = !(out.p_left < lacks_fit_p && size > least_left);
     if (out.effects.empty() && out.explains_all) out.single = shown_by_one();
     if (!out.effects.empty())
@@ -574,17 +234,19 @@ class JointSearch {
   /// At most 5 % of the copies with flipped stretches may show as much anywhere. Copies with flipped
   /// passes are not used: with few passes, many of them have the signs that the effect has.
   std::optional<JointExplanation::Single> shown_by_one() const {
-    const auto found = system_.gains({}, y_), chance = system_.gains({}, flipped());
+    const auto found = search_.system().single(search_.y()),
+               chance = search_.system().single(search_.flipped());
     double as_much = 0.0;
-    for (Index k = 0; k < shuffles; k += 2) as_much += chance.single(k) >= found.single(0) ? 1 : 0;
-    if (as_much > 0.05 * 0.5 * static_cast<double>(shuffles)) return std::nullopt;
-    const JointBlock& block = r_.blocks[found.single_block];
-    const MemberReadings& member = r_.members[found.single_member];
-    JointExplanation::Single out{block.effect, found.single_member};
-    const auto q = static_cast<double>(member.rank[found.single_block] + block.searched);
-    out.p = math::f_upper(found.single_fall / q, q, member.dof) *
-            static_cast<double>(system_.effects() * r_.members.size());
-    return out.p < differs_below ? std::optional(out) : std::nullopt;
+    for (Index k = 0; k < flipped_copies; k += 2)
+      as_much += chance.deviate(k) >= found.deviate(0) ? 1.0 : 0.0;
+    if (as_much > 0.05 * 0.5 * static_cast<double>(flipped_copies)) return std::nullopt;
+    const JointBlock& block = r_.blocks[found.block];
+    const MemberReadings& member = r_.members[found.member];
+    const auto q = static_cast<double>(member.rank[found.block] + block.searched);
+    const double p = math::f_upper(found.fall / q, q, member.dof) *
+                     static_cast<double>(search_.system().effects() * r_.members.size());
+    if (!(p < differs_below)) return std::nullopt;
+    return JointExplanation::Single{block.effect, found.member, p};
   }
 
   /// Null if the catalog of the campaign does not contain the effect.
@@ -638,13 +300,15 @@ class JointSearch {
 
   const std::vector<Member>& of_;
   const JointReadings& r_;
-  JointSystem system_;
-  std::uint64_t seed_;
-  std::vector<MatrixXd> y_;
-  double dof_ = 0.0, noise2_ = 0.0;
-  Choices choices_;
-  Chance chance_, unweighted_;  // for p/weight, which decides; for printed p
+  const JointSearch& search_;
 };
+
+JointExplanation explained(const std::vector<Member>& members, const JointReadings& readings,
+                           std::uint64_t seed) {
+  JointSearch search(members, readings, seed);
+  search.run();
+  return JointReport(members, readings, search).made();
+}
 
 }  // namespace
 
@@ -672,12 +336,12 @@ Expected<JointExplanation> explain_together(const std::vector<Member>& members,
                                             std::uint64_t seed) {
   constexpr double most_left = 0.5;
   NONIO_TRY(const auto readings, read_together(members));
-  JointExplanation first = JointSearch(members, readings, seed).run();
+  JointExplanation first = explained(members, readings, seed);
   if (first.effects.empty() || readings.offsets == 0.0) return first;
   const std::vector<Member> knowing = with_found(members, first);
   const auto again = read_together(knowing);
   if (!again || again->offsets > most_left * readings.offsets) return first;
-  return JointSearch(knowing, *again, seed).run();
+  return explained(knowing, *again, seed);
 }
 
 }  // namespace nonio::model

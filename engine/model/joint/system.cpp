@@ -220,12 +220,6 @@ std::vector<VectorXd> JointSystem::residuals(const std::vector<Choice>& choices,
   return out;
 }
 
-/// Normal deviate of a chi-squared variate (Wilson and Hilferty).
-static double deviate_of(double squares, double dof) {
-  const double variance = 2.0 / (9.0 * dof);
-  return (std::cbrt(squares / dof) - 1.0 + variance) / std::sqrt(variance);
-}
-
 JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
                                       const std::vector<MatrixXd>& y) const {
   struct Sums {
@@ -239,7 +233,6 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
   std::vector<Sums> sums(blocks);
   Gains out;
   out.own_parameters.assign(blocks, 0), out.own_price.assign(blocks, 0.0);
-  out.single = VectorXd::Constant(columns, -std::numeric_limits<double>::infinity());
   for (std::size_t b = 0; b < blocks; ++b) {
     const Index k = r_.blocks[b].count;
     sums[b] = {MatrixXd::Zero(k, k),   MatrixXd::Zero(k, n),       MatrixXd::Zero(k, columns),
@@ -284,15 +277,7 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
       if (rank < member.rank[b]) sum.own_possible = false;
       if (!sum.own_possible) continue;
       const MatrixXd weighted = math::product(inner, by);
-      const VectorXd falls = by.cwiseProduct(weighted).colwise().sum().transpose();
-      sum.own += falls;
-      if (n == 0 && rank > 0)
-        for (Index c = 0; c < columns; ++c) {
-          const double z = deviate_of(falls(c), static_cast<double>(rank));
-          if (!(z > out.single(c))) continue;
-          out.single(c) = z;
-          if (c == 0) out.single_block = b, out.single_member = m, out.single_fall = falls(c);
-        }
+      sum.own += by.cwiseProduct(weighted).colwise().sum().transpose();
       out.own_parameters[b] += rank;
       out.own_price[b] += static_cast<double>(rank) * std::log(member.readings);
       if (a == 0) continue;
@@ -320,6 +305,35 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
     const MatrixXd left = s - sum.of_own;
     if (sum.own_possible && out.own_parameters[b] > 0 && is_independent(left, s.diagonal()))
       out.own.row(row) = (sum.own + quadratic(left, right - sum.right_of_own) - base).transpose();
+  }
+  return out;
+}
+
+/// Normal deviate of a chi-squared variate (Wilson and Hilferty).
+static double deviate_of(double squares, double dof) {
+  const double variance = 2.0 / (9.0 * dof);
+  return (std::cbrt(squares / dof) - 1.0 + variance) / std::sqrt(variance);
+}
+
+JointSystem::Single JointSystem::single(const std::vector<MatrixXd>& y) const {
+  Single out{VectorXd::Constant(y.front().cols(), -std::numeric_limits<double>::infinity())};
+  for (std::size_t m = 0; m < r_.members.size(); ++m) {
+    const MemberReadings& member = r_.members[m];
+    const MatrixXd with = math::transposed_product(member.x, y[m]);
+    for (std::size_t b = 0; b < r_.blocks.size(); ++b) {
+      const Index at = member.first[b];
+      if (at < 0) continue;
+      const auto [inner, rank] = ranked_inverse(member.own[b], member.own[b].diagonal());
+      if (rank < member.rank[b] || rank == 0) continue;
+      const MatrixXd by = with.middleRows(at, r_.blocks[b].count);
+      const MatrixXd falls = by.cwiseProduct(math::product(inner, by)).colwise().sum();
+      for (Index c = 0; c < falls.cols(); ++c) {
+        const double z = deviate_of(falls(c), static_cast<double>(rank));
+        if (!(z > out.deviate(c))) continue;
+        out.deviate(c) = z;
+        if (c == 0) out.block = b, out.member = m, out.fall = falls(c);
+      }
+    }
   }
   return out;
 }

@@ -57,13 +57,17 @@ class JointSystem {
     MatrixXd shared, own;
     std::vector<Index> own_parameters;
     std::vector<double> own_price;  ///< cost of separate values in each member
-    /// Without choices: the most significant decrease by one block in one member, as a normal
-    /// deviate, for each column of `y`; where it is for the first column.
-    VectorXd single{};
-    std::size_t single_block = 0, single_member = 0;
-    double single_fall = 0.0;
   };
   Gains gains(const std::vector<Choice>& choices, const std::vector<MatrixXd>& y) const;
+
+  /// The most significant decrease of the squares by one block in one member, without other
+  /// choices: as a normal deviate, for each column of `y`; which it is for the first column.
+  struct Single {
+    VectorXd deviate;
+    std::size_t block = 0, member = 0;
+    double fall = 0.0;  ///< of the squares
+  };
+  Single single(const std::vector<MatrixXd>& y) const;
 
   double readings() const;
   double price_of(const JointBlock& block) const;  ///< cost of the shapes and the name of a block

@@ -276,6 +276,23 @@ class Part(unittest.TestCase):
         text = subprocess.run([NONIO, "model", "compare", none, "--model-of", seen], capture_output=True, text=True, check=True).stdout
         self.assertIn("the model does not help with readings that it has not seen", text)
 
+    def test_what_a_curve_does_not_reach_is_not_predicted(self):
+        self.rng = random.Random(14)
+        seen = self.campaign("seen", "straightness:EYX", known=True, parts=(("P1", 0),))
+        plates.write(seen, (("P1", 0),), model=["straightness:EYX"], known=True)
+        inside = plates.grid(100)
+        larger = inside + [(x + plates.SIZE, y) for x, y in inside if x > 1.0 - plates.SIZE / 2]
+        unseen = self.campaign("unseen", "straightness:EYX", known=True, holes=larger, parts=(("P1", 0),))
+        done = subprocess.run([NONIO, "model", "compare", unseen, "--model-of", seen, "--json"], capture_output=True, text=True, check=True)
+        part, = json.loads(done.stdout)["parts"]
+        self.assertEqual(part["left_out"], 2 * (len(larger) - len(inside)))
+        self.assertGreater(part["inside_U"], 0.9)
+        self.assertIn(f"{part['left_out']}, not counted", part["says"])
+        beside = self.campaign("beside", "straightness:EYX", known=True, holes=[(x + 2 * plates.SIZE, y) for x, y in inside], parts=(("P1", 0),))
+        done = subprocess.run([NONIO, "model", "compare", beside, "--model-of", seen], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertIn("all 200 readings are outside the places that the model was fitted to", done.stderr)
+
     def test_mistakes(self):
         folder = self.campaign("a", "none")
         manifest = folder / "campaign.toml"
