@@ -140,6 +140,15 @@ TEST_P(Mutants, OfTheXmlAreReadOrRefused) {
   }
 }
 
+// One changed byte makes the last record one of Zip64, whose length would be that of 10 PB.
+TEST_P(Mutants, WithAnImpossibleLengthAreRefused) {
+  std::string bytes = bytes_of(GetParam());
+  const std::size_t end = bytes.rfind("PK\5\6");
+  ASSERT_NE(end, std::string::npos);
+  bytes[end + 2] = 6;
+  EXPECT_FALSE(read(bytes));
+}
+
 INSTANTIATE_TEST_SUITE_P(Spreadsheets, Mutants,
                          testing::Values("openpyxl.xlsx", "libreoffice.xlsx", "libreoffice.ods"));
 
