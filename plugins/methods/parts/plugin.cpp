@@ -188,6 +188,55 @@ class Rows {
   std::array<std::size_t, 3> axis_{};
 };
 
+bool is_multiple(double x, double step) {
+  return std::fabs(x - step * std::round(x / step)) < 1e-10;  // m
+}
+
+/// Rows that look like a mistake: columns exchanged, rows copied, a coordinate without readings.
+std::vector<Finding> doubts_of(const Readings& r) {
+  constexpr std::size_t least = 4;     // features
+  constexpr double drawn = 1e-4;       // m; the places of a drawing are its multiples
+  constexpr double resolution = 1e-5;  // m; measured places are no multiples of it
+  constexpr double blank = 1e9;        // m; NaN has no order
+  std::vector<Finding> out;
+  std::vector<std::vector<double>> rows(r.size());
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto *to = r.column(nominal[k]), *from = r.column(measured[k]);
+    if (to == nullptr || from == nullptr) continue;
+    std::size_t features = 0, drawn_measured = 0, odd_nominal = 0, equal = 0;
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      const double p = (*to)[i], m = (*from)[i];
+      rows[i].insert(rows[i].end(), {p, std::isfinite(m) ? m : blank});
+      if (!std::isfinite(p) || !std::isfinite(m)) continue;
+      ++features;
+      drawn_measured += is_multiple(m, drawn);
+      odd_nominal += !is_multiple(p, resolution);
+      equal += p == m;
+    }
+    if (features < least) continue;
+    const auto add = [&](const char* id) {
+      out.push_back({.id = id,
+                     .attention = true,
+                     .evidence = {{"features", static_cast<double>(features), Quantity::count}},
+                     .texts = {{"along", coordinates[k]}}});
+    };
+    if (equal == features)
+      add("plausibility.part-as-nominal");
+    else if (drawn_measured == features && 2 * odd_nominal > features)
+      add("plausibility.part-columns-exchanged");
+  }
+  // A feature that is measured twice differs in the last digits, if not in all coordinates.
+  std::map<std::vector<double>, std::size_t> times;
+  std::size_t copies = 0;
+  for (const auto& row : rows) copies += ++times[row] > 1;
+  if (copies >= least && 4 * copies >= r.size())
+    out.push_back({.id = "plausibility.part-rows-twice",
+                   .attention = true,
+                   .evidence = {{"copies", static_cast<double>(copies), Quantity::count},
+                                {"rows", static_cast<double>(r.size()), Quantity::count}}});
+  return out;
+}
+
 Expected<Observations> observations_of(const MethodInput& in) {
   const Measurement& m = in.measurement;
   const Readings& r = in.readings;
@@ -246,6 +295,7 @@ Expected<Observations> observations_of(const MethodInput& in) {
   }
   Observations o = rows.made();
   o.missing = missing;
+  o.doubts = doubts_of(r);
   o.order_known = false;  // the order of measurement is not the order of machining
   return o;
 }

@@ -75,6 +75,19 @@ def waves():
                 for run in range(1, 6) for d in "+-" for i in range(47)[::1 if d == "+" else -1]])
 
 
+def plate(change, times=1):
+    """Nine holes; `change` returns the nominal and the measured place of one."""
+    rng = random.Random(9)
+    lines = ["nominal_x_mm,nominal_y_mm,measured_x_mm,measured_y_mm"]
+    for x in (50, 150, 250):
+        for y in (50, 150, 250):
+            p = [float(x), float(y)]
+            nominal, measured = change(p, [c + rng.gauss(0, 0.002) for c in p])
+            lines += [",".join(f"{c:.4f}" for c in [*nominal, *measured])] * times
+    return (lambda text: sub(("[instrument]", Y_AXIS + "[instrument]"))(text) +
+            '[[measurement]]\nid = "plate"\nkind = "part"\nfile = "p.csv"\n', {"p.csv": "\n".join(lines) + "\n"})
+
+
 def sub(*pairs):
     def change(text):
         for old, new in pairs:
@@ -174,6 +187,9 @@ def cases():
                         SECOND.format("C", "ball-centres", "c.csv").split("feed")[0], {"c.csv": ball(2, 1 / 25.4)}),
         "axis-direction": (lambda text: sub(("[instrument]", C_AXIS + "[instrument]"))(text) +
                            SECOND.format("C", "ball-centres", "c.csv").split("feed")[0], {"c.csv": ball(0)}),
+        "part-columns-exchanged": plate(lambda p, m: (m, p)),
+        "part-as-nominal": plate(lambda p, m: (p, [p[0], m[1]])),
+        "part-rows-twice": plate(lambda p, m: (p, m), times=2),
         # Last: each case has the readings of its place.
         "rows-shifted": read(lambda r: moved([x[:3] + [x[3] + 9 * math.sin(x[2] / 150) + 5 * math.cos(x[2] / 47)] for x in r])),
         "direction-turned": read(lambda r: [x if x[1] != "-" else x[:3] + [-x[3]] for x in bump(r)]),
