@@ -62,7 +62,7 @@ int update(const std::string& what, const char* out, const std::vector<std::stri
 /// The worklist, as at the end of a run.
 int morning(const char* out, const char* templates) {
   nonio::reading::Context context;
-  auto read = nonio::config::read_templates({templates}, context.templates_sha256);
+  auto read = nonio::config::read_templates({templates});
   if (!read) return complain(read.error());
   context.templates = std::move(*read);
   nonio::batch::RunOptions options;

@@ -375,9 +375,8 @@ int history(const HistoryWish& wish, const Common& common) {
   auto site = assessment::assess(wish.out, *last_run, [] {});
   if (!site) return complain(site.error().message);
   keep(wish, machine, *site);
-  std::string digest;
-  const auto templates = config::read_templates(common.template_folders(), digest, nullptr, {},
-                                                config::words_in(last_run->language));
+  const auto templates =
+      config::read_templates(common.template_folders(), {}, config::words_in(last_run->language));
   if (!templates) return complain(templates.error().message);
   if (common.json) {
     std::cout << assessment::history_json(*site, *last_run, *templates);

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <string_view>
@@ -40,6 +41,14 @@ void block_pipe_signal() {
   constexpr std::string_view words = "nonio: out of memory, or an unexpected error\n";
   [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, words.data(), words.size());
   ::_exit(nonio::app::exit_failed);
+}
+
+/// Ends the process without destructors: to free all texts and the state of all libraries takes as
+/// long as to read them.
+[[noreturn]] void leave(int status) {
+  std::cout.flush();
+  std::fflush(nullptr);
+  ::_exit(status);
 }
 
 using namespace nonio::app;
@@ -185,7 +194,7 @@ int main(int argc, char** argv) try {
       .aliases_until = "0.3",
       .synonyms = synonyms()};
   program.verbs = table_of_commands(common, program);
-  return run(program, argc, argv);
+  leave(run(program, argc, argv));
 } catch (const std::exception& e) {
   std::cerr << "nonio: " << e.what() << "\n";
   return nonio::app::exit_failed;

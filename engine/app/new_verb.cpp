@@ -327,7 +327,7 @@ std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::strin
         return {done.error()};
   if (auto done = storage::publish(folder, files); !done) return {done.error()};
   auto place = reading::open_workplace(folder, common.plugin_folders(), common.template_folders(),
-                                       NONIO_VERSION, reading::TemplatesFor::own_documents);
+                                       NONIO_VERSION);
   if (!place) return {place.error()};
   return evaluation::evaluate(folder, id, (*place)->context, [](const std::string&) {})
       .results.errors;

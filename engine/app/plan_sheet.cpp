@@ -36,8 +36,7 @@ int write_sheet(const SheetWish& wish, const Machine& machine, const PointTable&
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(conflict);
-  std::string digest;
-  const auto templates = config::read_templates(common.template_folders(), digest);
+  const auto templates = config::read_templates(common.template_folders());
   if (!templates) return complain(text_of(templates.error()));
   options["language"] = wish.language;
   options["stops"] = std::to_string(wish.stops);

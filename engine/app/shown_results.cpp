@@ -17,9 +17,8 @@ using storage::Json;
 namespace fs = std::filesystem;
 
 Expected<Shown> evaluated_now(const fs::path& folder, const Common& common, Documents documents) {
-  NONIO_TRY(auto place,
-            reading::open_workplace(folder, common.plugin_folders(), common.template_folders(),
-                                    NONIO_VERSION, reading::TemplatesFor::own_documents));
+  NONIO_TRY(auto place, reading::open_workplace(folder, common.plugin_folders(),
+                                                common.template_folders(), NONIO_VERSION));
   if (!common.quiet)
     for (const std::string& note : place->notes) complain(note);
   const reading::Context& context = place->context;
@@ -40,14 +39,14 @@ Expected<Shown> evaluated_now(const fs::path& folder, const Common& common, Docu
 
 Expected<Shown> of_run(const fs::path& folder, const Common& common) {
   NONIO_TRY(auto text, storage::read_file(folder / evaluation::results_name));
-  std::string language = "en", digest;
+  std::string language = "en";
   std::vector<std::string> notes;
   if (auto record = evaluation::read_record(folder); record && !record->language.empty()) {
     language = record->language;
     notes = std::move(record->notes);
   }
-  NONIO_TRY(auto templates, config::read_templates(common.template_folders(), digest, nullptr, {},
-                                                   config::words_in(language)));
+  NONIO_TRY(auto templates,
+            config::read_templates(common.template_folders(), {}, config::words_in(language)));
   return Shown{std::move(text), std::move(templates), language, {}, std::move(notes)};
 }
 

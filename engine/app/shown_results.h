@@ -9,7 +9,7 @@
 #include "common.h"
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
-#include "nonio/sdk/settings.h"
+#include "nonio/sdk/templates.h"
 
 namespace nonio::app {
 

@@ -13,8 +13,8 @@ std::string language_at(const fs::path& path) {
   std::error_code error;
   for (fs::path folder = fs::weakly_canonical(path, error); !error && !folder.empty();
        folder = folder.parent_path()) {
-    std::string digest;
     if (fs::exists(folder / config::site_name, error)) {
+      std::string digest;
       const auto site = config::read_site(folder, digest);
       return site ? site->language : "en";
     }
@@ -27,12 +27,11 @@ std::string language_at(const fs::path& path) {
 }
 
 SiteWords::SiteWords(const Common& common, const std::string& language, const std::string& more) {
-  std::string digest;
   std::vector<std::string> files;
   for (const std::string& folder : {std::string("words/en/"), "words/" + language + "/"})
     for (const std::string& file : {std::string("terminal"), std::string("site"), more})
       files.push_back(folder + file);
-  if (auto read = config::read_templates(common.template_folders(), digest, nullptr, {}, files))
+  if (auto read = config::read_templates(common.template_folders(), {}, files))
     templates_ = std::move(*read);
   words_.emplace(templates_,
                  templates_.tables.contains("words/" + language + "/terminal") ? language : "en");

@@ -146,9 +146,9 @@ int print_worklist(const WorklistWish& wish, const Common& common) {
     if (!with_site) return complain(text_of(with_site.error()));
     folders = std::move(*with_site);
   }
-  std::string language = wish.language.empty() ? last_run->language : wish.language, digest;
+  std::string language = wish.language.empty() ? last_run->language : wish.language;
   const auto below = wish.page.empty() ? config::words_in(language) : std::vector<std::string>();
-  const auto templates = config::read_templates(folders, digest, nullptr, {}, below);
+  const auto templates = config::read_templates(folders, {}, below);
   if (!templates) return complain(templates.error().message);
   auto assessment = assessment::Assessment::of(
       wish.out, *last_run, [] {}, assessment::Assessment::Kept::used,

@@ -108,8 +108,8 @@ Expected<void> attach_sources(const evaluation::Evaluated& evaluated, CampaignFi
   if (!context.site.settings.empty())
     to.push_back({settings_name, context.site.settings, "application/toml", source_relation,
                   "what of the laboratory's settings has an effect in the results"});
-  if (!context.templates_json.empty())
-    to.push_back({templates_name, context.templates_json, "application/json", "Source",
+  if (!context.template_texts.json.empty())
+    to.push_back({templates_name, context.template_texts.json, "application/json", "Source",
                   "words and layout of the documents"});
   return {};
 }

@@ -163,8 +163,8 @@ class Again {
       return not_checked(id, "the file was made by another version");
     const pdf::Attachment* carried = find_attachment(v_, templates_name);
     if (carried == nullptr) return {id, State::fails, "none are attached"};
-    auto own =
-        config::templates_from(carried->bytes, installed_.templates, installed_.templates_json);
+    auto own = config::templates_from(carried->bytes, installed_.templates,
+                                      installed_.template_texts.json);
     if (!own) return {id, State::fails, own.error().message};
     if (stated_.certificate && stated_.certificate->templates_sha256 != own->sha256)
       return {id, State::fails, "the attached ones are not those that results.json names"};
@@ -172,8 +172,8 @@ class Again {
     missing_ = own->missing;
     if (!missing_.empty()) return not_checked(id, missing_ + " is not installed as it was then");
     context_.templates = std::move(own->templates);
-    context_.templates_sha256 = own->sha256;
-    context_.templates_json = carried->bytes;
+    context_.template_texts.sha256 = own->sha256;
+    context_.template_texts.json = carried->bytes;
     return {id, State::holds, "the attached ones are those that results.json names"};
   }
 

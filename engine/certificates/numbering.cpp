@@ -418,7 +418,7 @@ Expected<evaluation::Certificate> Numbers::find_or_draw(const evaluation::Evalua
   if (!where_.can_sign) return fail(no_key);
   NONIO_TRY(auto readings, files.readings_sha256(evaluated.inputs));
   issue.readings_sha256 = readings;
-  certificate.templates_sha256 = context_.templates_sha256;
+  certificate.templates_sha256 = context_.template_texts.sha256;
   certificate.draft = as_draft || !may_issue(evaluated);
   if (certificate.draft) return certificate;
   auto drawn = opened.draw(campaign, data, where_.today);

@@ -79,10 +79,8 @@ Expected<std::unique_ptr<reading::Workplace>> open_to_verify(
   auto place = std::make_unique<reading::Workplace>();
   reading::Context& context = place->context;
   context.version = version;
-  auto templates =
-      config::read_templates(template_folders, context.templates_sha256, &context.templates_json);
-  if (!templates) return fail(templates.error());
-  context.templates = std::move(*templates);
+  NONIO_TRY(context.templates,
+            config::read_templates(template_folders, {}, {}, &context.template_texts, true));
   place->plugins.load(plugin_folders);
   if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
   context.plugins = &place->plugins;

@@ -62,7 +62,7 @@ Expected<Shells> shells_of(const LiveWish& wish) {
   std::vector<std::string> below;
   for (const std::string& language : {std::string("en"), settings->language})
     below.push_back("words/" + language + "/workbench");
-  NONIO_TRY(const auto templates, config::read_templates(folders, digest, nullptr, {}, below));
+  NONIO_TRY(const auto templates, config::read_templates(folders, {}, below));
   const bool is_there = templates.tables.contains(below.back());
   const std::string language = is_there ? settings->language : "en";
   NONIO_TRY(auto campaign, workbench::shell_html(templates, language, workbench::Shell::campaign));

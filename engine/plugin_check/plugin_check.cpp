@@ -20,6 +20,7 @@
 #include "platform/process/child.h"
 #include "platform/process/confine.h"
 #include "platform/process/shared_status.h"
+#include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 #include "platform/storage/nearest.h"
 #include "plugin_check/plugin_checks.h"
@@ -142,9 +143,10 @@ class Checker {
       : request_(request), tell_(tell) {}
 
   Expected<void> prepare() {
+    storage::sha256("");  // OpenSSL reads its settings at the first use, which no plugin is to be
+                          // blamed for
     own_.load({request_.own_plugins});
-    std::string digest;
-    NONIO_TRY(auto templates, config::read_templates(request_.template_folders, digest));
+    NONIO_TRY(auto templates, config::read_templates(request_.template_folders));
     bench_.templates = std::move(templates);
     bench_.context.version = request_.version;
     bench_.context.plugins = &own_;

@@ -11,8 +11,7 @@ namespace fs = std::filesystem;
 
 Expected<TemplateCheck> check_templates(const std::vector<fs::path>& template_folders,
                                         const std::vector<fs::path>& plugin_folders) {
-  std::string digest;
-  NONIO_TRY(const auto templates, config::read_templates(template_folders, digest));
+  NONIO_TRY(const auto templates, config::read_templates(template_folders));
   loader::Plugins plugins;
   plugins.load(plugin_folders);
   if (!plugins.conflicts().empty()) return fail(plugins.conflicts().front());

@@ -151,7 +151,7 @@ class MachinePages {
         out_(out),
         context_(context),
         language_(language_of_pages(context)),
-        made_from_(context.templates_sha256 + language_) {}
+        made_from_(context.template_texts.sha256 + language_) {}
 
   Expected<void> write(const std::function<void()>& alive) {
     constexpr std::size_t at_once = 64;

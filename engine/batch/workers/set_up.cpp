@@ -123,11 +123,14 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
     place->signer.emplace(*context.site.signing, options.site, context.site.limits.disk_seconds);
     note_key(*place, !context.site.signing->time_stamp.empty());
   }
-  auto templates = config::read_templates(options.template_folders, context.templates_sha256,
-                                          context.site.signing ? &context.templates_json : nullptr,
-                                          files->templates);
+  auto templates =
+      config::read_templates(options.template_folders, files->templates, {},
+                             &context.template_texts, context.site.signing.has_value());
   if (!templates) return fail(all_of({templates.error()}));
   context.templates = std::move(*templates);
+  // Read before the fork, so that no process that evaluates reads them again.
+  for (const std::string& language : {std::string("en"), context.site.language})
+    context.templates.tables.read(language);
   for (const Error& warning : config::warnings_of_causes(context.templates))
     place->notes.push_back(all_of({warning}));
   if (auto allowed = check_user(options); !allowed) return fail(allowed.error());

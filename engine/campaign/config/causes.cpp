@@ -127,21 +127,19 @@ std::vector<Error> warnings_of_causes(const Templates& templates) {
   return read_in(templates)->warnings;
 }
 
-void add_words(const std::vector<Cause>& causes, Templates& templates) {
-  if (causes.empty()) return;
-  auto& words = templates.tables["words/en/causes"].values;
+void add_words(const std::vector<Cause>& causes, const std::string& language,
+               TemplateTables::Map& tables) {
   for (const Cause& c : causes) {
     const std::string at = "effect." + c.formula.name + ".";
-    for (const auto& [language, title] : c.titles)
-      if (!language.empty() && language != "en")
-        templates.tables["words/" + language + "/causes"].values[at + "title"] = title;
-    for (const auto& [key, text] : {std::pair{"title", &c.title},
-                                    {"is", &c.is},
-                                    {"size", &c.size},
-                                    {"appearance", &c.appearance},
-                                    {"similar", &c.similar},
-                                    {"remedy", &c.remedy}})
-      if (!text->empty()) words[at + key] = *text;
+    const auto put = [&](const char* key, const std::string& text) {
+      if (!text.empty()) tables["words/" + language + "/causes"].values[at + key] = text;
+    };
+    if (language == "en") {
+      put("title", c.title), put("is", c.is), put("size", c.size);
+      put("appearance", c.appearance), put("similar", c.similar), put("remedy", c.remedy);
+    } else if (const auto title = c.titles.find(language); title != c.titles.end()) {
+      put("title", title->second);
+    }
   }
 }
 

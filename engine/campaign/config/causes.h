@@ -9,7 +9,7 @@
 
 #include "campaign/config/formula.h"
 #include "campaign/config/manifest.h"
-#include "nonio/sdk/settings.h"
+#include "nonio/sdk/templates.h"
 
 /// The library of causes: effects as formulas, in causes/*.toml of the templates and of the site.
 namespace nonio::config {
@@ -46,7 +46,8 @@ Checked<Library> causes_in(const Templates& templates);
 /// Returns one warning for each former name of a key in a file, with the line of its first use.
 std::vector<Error> warnings_of_causes(const Templates& templates);
 
-/// Adds the texts of the causes to the words for effects in the templates.
-void add_words(const std::vector<Cause>& causes, Templates& templates);
+/// Adds the texts of the causes to the words of a language.
+void add_words(const std::vector<Cause>& causes, const std::string& language,
+               TemplateTables::Map& tables);
 
 }  // namespace nonio::config

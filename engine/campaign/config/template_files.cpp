@@ -2,10 +2,11 @@
 #include "campaign/config/template_files.h"
 
 #include <algorithm>
+#include <set>
+#include <stdexcept>
 
 #include "campaign/config/causes.h"
 #include "campaign/config/site_files.h"
-#include "nonio/sdk/gathered_words.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
@@ -54,12 +55,13 @@ fs::path path_of(const TemplateFiles& own, const std::string& name) {
              : own.folder / name;
 }
 
-bool in_other_language(const std::string& name, const std::vector<std::string>& languages) {
+/// Language of "words/LANGUAGE/FILE.toml"; empty for other files.
+std::string language_of(const std::string& name) {
   constexpr std::string_view words = "words/";
-  return !languages.empty() && name.starts_with(words) &&
-         std::none_of(languages.begin(), languages.end(), [&](const std::string& language) {
-           return name.compare(words.size(), language.size() + 1, language + "/") == 0;
-         });
+  const std::size_t end = name.find('/', words.size());
+  return name.starts_with(words) && name.ends_with(".toml") && end != std::string::npos
+             ? name.substr(words.size(), end - words.size())
+             : "";
 }
 
 std::string line_of(const std::string& name, const std::string& digest) {
@@ -75,6 +77,8 @@ Expected<SharedBytes> bytes_of(const fs::path& path, bool is_mapped) {
   return SharedBytes(kept, kept->bytes());
 }
 
+std::string table_name(const std::string& file) { return file.substr(0, file.size() - 5); }
+
 Expected<void> keep(Templates& templates, const std::string& name, const SharedBytes& bytes,
                     const std::string& path) {
   if (!name.ends_with(".toml") || is_causes_file(name)) {
@@ -82,16 +86,49 @@ Expected<void> keep(Templates& templates, const std::string& name, const SharedB
     return {};
   }
   NONIO_TRY(auto settings, parse_settings(bytes, path));
-  templates.tables[name.substr(0, name.size() - 5)] = std::move(settings);
+  templates.tables[table_name(name)] = std::move(settings);
+  return {};
+}
+
+/// Files of words that are not parsed yet, by language and name.
+struct UnreadFile {
+  SharedBytes bytes;
+  std::string path;
+};
+using Unread = std::map<std::string, std::map<std::string, UnreadFile>>;
+
+/// Adds the words of causes, and `unread` when it is needed.
+Expected<void> complete(Templates& templates, Unread unread) {
+  auto causes = causes_in(templates);
+  if (!causes) return fail(causes.error().front());
+  std::set<std::string> languages{"en"};
+  for (const auto& [name, table] : templates.tables)
+    if (const std::string language = language_of(name + ".toml"); !language.empty())
+      languages.insert(language);
+  for (const auto& [language, files] : unread) languages.insert(language);
+  for (const Cause& cause : **causes)
+    for (const auto& [language, title] : cause.titles)
+      if (!language.empty()) languages.insert(language);
+  templates.tables.read_later(std::move(languages),
+                              [causes = std::move(*causes), unread = std::move(unread)](
+                                  const std::string& language, TemplateTables::Map& tables) {
+                                if (const auto files = unread.find(language); files != unread.end())
+                                  for (const auto& [name, file] : files->second) {
+                                    auto settings = parse_settings(file.bytes, file.path);
+                                    if (!settings)
+                                      throw std::runtime_error(settings.error().message);
+                                    tables[table_name(name)] = std::move(*settings);
+                                  }
+                                add_words(*causes, language, tables);
+                              });
   return {};
 }
 
 }  // namespace
 
-Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::string& digest,
-                                   std::string* json, const TemplateFiles& own,
-                                   const std::vector<std::string>& below,
-                                   const std::vector<std::string>& languages) {
+Expected<Templates> read_templates(const std::vector<fs::path>& folders, const TemplateFiles& own,
+                                   const std::vector<std::string>& below, TemplateTexts* texts,
+                                   bool with_json) {
   std::map<std::string, fs::path> files;
   for (const fs::path& folder : folders) {
     NONIO_TRY(auto here, template_paths(folder));
@@ -106,6 +143,7 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
                         [&](const std::string& start) { return file.first.starts_with(start); });
   });
   Templates templates;
+  Unread unread;
   std::string all;
   storage::Json carried = storage::Json::object();
   for (const auto& [name, path] : files) {
@@ -114,23 +152,24 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
     NONIO_TRY(const auto bytes, of_site == own.files.end()
                                     ? bytes_of(path, is_installed && !travels(name))
                                     : Expected<SharedBytes>(of_site->second));
-    const std::string sum = storage::sha256(bytes);
-    all += line_of(name, sum);
-    if (json != nullptr)
-      carried[name] = !travels(name)            ? storage::Json{{"sha256", sum}}
-                      : name.ends_with(".toml") ? storage::Json{{"text", std::string_view(bytes)}}
-                                                : storage::Json{{"hex", to_hex(bytes)}};
-    if (in_other_language(name, languages) && is_installed) continue;
-    if (auto kept = keep(templates, name, bytes, path.string()); !kept) return fail(kept.error());
+    if (texts != nullptr) {
+      const std::string sum = storage::sha256(bytes);
+      all += line_of(name, sum);
+      if (with_json)
+        carried[name] = !travels(name)            ? storage::Json{{"sha256", sum}}
+                        : name.ends_with(".toml") ? storage::Json{{"text", std::string_view(bytes)}}
+                                                  : storage::Json{{"hex", to_hex(bytes)}};
+    }
+    if (const std::string language = language_of(name); is_installed && !language.empty())
+      unread[language][name] = {bytes, path.string()};
+    else if (auto kept = keep(templates, name, bytes, path.string()); !kept)
+      return fail(kept.error());
   }
-  if (auto read = causes_in(templates))
-    add_words(**read, templates);
-  else
-    return fail(read.error().front());
-  gather_words(templates);
-  digest = storage::sha256(all);
-  if (json != nullptr)
-    *json = storage::dump(
+  if (auto done = complete(templates, std::move(unread)); !done) return fail(done.error());
+  if (texts == nullptr) return templates;
+  texts->sha256 = storage::sha256(all);
+  if (with_json)
+    texts->json = storage::dump(
         storage::Json{{"schema", "nonio-templates/1"}, {"files", std::move(carried)}});
   return templates;
 }
@@ -182,11 +221,7 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
   if (ours.is_object() && ours.contains("files"))
     for (const auto& [name, file] : ours["files"].items())
       if (!json["files"].contains(name) && travels(name)) out.strange.push_back(name);
-  if (auto read = causes_in(out.templates))
-    add_words(**read, out.templates);
-  else
-    return fail(read.error().front());
-  gather_words(out.templates);
+  if (auto done = complete(out.templates, {}); !done) return fail(done.error());
   out.sha256 = storage::sha256(all);
   return out;
 }

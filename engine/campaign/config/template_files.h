@@ -21,15 +21,20 @@ struct TemplateFiles {
 Expected<std::map<std::string, std::filesystem::path>> template_paths(
     const std::filesystem::path& folder);
 
-/// Later folders replace files of earlier ones, and `own` replaces all. `digest` receives a digest
-/// of all files, `json` the text that `templates_from` reads. If `below` is not empty, only files
-/// whose names begin with one of its texts are read. If `languages` is not empty, words of other
-/// languages in the first folder only count for `digest`.
+/// Texts that belong to the templates.
+struct TemplateTexts {
+  std::string sha256;  ///< of all files
+  std::string json{};  ///< what `templates_from` reads
+};
+
+/// Later folders replace files of earlier ones, and `own` replaces all. The words of the first
+/// folder, which belongs to the program, are read when they are needed. If `below` is not empty,
+/// only files whose names begin with one of its texts are read. `texts`, if not null, is filled;
+/// `texts->json` only if `with_json`.
 Expected<Templates> read_templates(const std::vector<std::filesystem::path>& folders,
-                                   std::string& digest, std::string* json = nullptr,
                                    const TemplateFiles& own = {},
                                    const std::vector<std::string>& below = {},
-                                   const std::vector<std::string>& languages = {});
+                                   TemplateTexts* texts = nullptr, bool with_json = false);
 
 /// Returns `below` of `read_templates` for sentences in `language`, without fonts and pages.
 std::vector<std::string> words_in(const std::string& language);

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "nonio/sdk/settings.h"
+#include "nonio/sdk/templates.h"
 
 namespace nonio::config {
 

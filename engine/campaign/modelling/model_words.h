@@ -7,7 +7,7 @@
 #include "campaign/modelling/campaign_model.h"
 #include "nonio/model/prediction.h"
 #include "nonio/sdk/results.h"
-#include "nonio/sdk/settings.h"
+#include "nonio/sdk/templates.h"
 #include "platform/storage/nearest.h"
 
 /// Sentences about a model, from templates/words/<language>/model.toml.

@@ -44,10 +44,9 @@ struct Workplace {
   std::vector<std::string> notes;
 };
 
-/// `documents` needs all templates, and `own_documents` only the words of the campaign's languages;
-/// others read only words and causes, which saves a third of the time of a short command. Except
-/// with `terminal`, causes can be named.
-enum class TemplatesFor { documents, own_documents, terminal, terminal_with_library };
+/// `documents` needs all templates; others read only words and causes. Except with `terminal`,
+/// causes can be named.
+enum class TemplatesFor { documents, terminal, terminal_with_library };
 
 /// Loads plugins, templates, site.toml and machine records. Returns an error for
 /// `Plugins::conflicts`.

@@ -5,7 +5,6 @@
 #include "campaign/config/template_files.h"
 #include "campaign/reading/campaign_reader.h"
 #include "platform/process/apart.h"
-#include "platform/storage/files.h"
 
 namespace nonio::reading {
 
@@ -15,26 +14,11 @@ std::string shared_name(const std::string& file) { return "shared " + file; }
 Inputs shared_inputs(const Context& context) {
   return {{"site.toml", context.site_sha256},
           {"plugins", context.plugins_sha256},
-          {"templates", context.templates_sha256},
+          {"templates", context.template_texts.sha256},
           {"version", context.version}};
 }
 
 namespace fs = std::filesystem;
-
-namespace {
-
-/// Languages of the documents of a campaign; empty, which means all, if the campaign or an option of
-/// the site names one.
-std::vector<std::string> languages_of(const fs::path& campaign, const config::SiteFile& site) {
-  const auto manifest = storage::read_file(campaign / config::manifest_name);
-  if (!manifest || manifest->find("language") != std::string::npos || !site.options.empty())
-    return {};
-  std::vector<std::string> out = site.certificate.languages;
-  out.insert(out.end(), {"en", site.language});
-  return out;
-}
-
-}  // namespace
 
 Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
                                                     const std::vector<fs::path>& plugin_folders,
@@ -74,14 +58,9 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   // Templates are read after the fork for plugins, because freeing them in the plugin process would
   // copy each page.
   NONIO_TRY(const auto folders, config::with_site_templates(template_folders, site));
-  std::vector<std::string> below, languages;
-  if (what == TemplatesFor::own_documents)
-    languages = languages_of(campaign, context.site);
-  else if (what != TemplatesFor::documents)
-    below = config::words_in(context.site.language);
-  NONIO_TRY(auto templates, config::read_templates(folders, context.templates_sha256, nullptr, {},
-                                                   below, languages));
-  context.templates = std::move(templates);
+  std::vector<std::string> below;
+  if (what != TemplatesFor::documents) below = config::words_in(context.site.language);
+  NONIO_TRY(context.templates, config::read_templates(folders, {}, below));
   for (const Error& warning : config::warnings_of_causes(context.templates)) note(warning);
   return place;
 }

@@ -9,6 +9,7 @@
 
 #include "campaign/config/machines.h"
 #include "campaign/config/manifest.h"
+#include "campaign/config/template_files.h"
 #include "campaign/loader/plugins.h"
 
 namespace nonio::reading {
@@ -23,9 +24,7 @@ struct Context {
   std::string plugins_sha256;  ///< empty if no results are recorded
   std::string today{};         ///< YYYY-MM-DD; if empty, no date is too late
   Templates templates;
-  std::string templates_sha256;
-  /// Templates as text for signed files (`read_templates`).
-  std::string templates_json{};
+  config::TemplateTexts template_texts{};  ///< empty if no results are recorded
   /// Whether causes become effects even if no model names a cause.
   bool every_cause = false;
 };

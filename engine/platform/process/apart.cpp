@@ -73,7 +73,6 @@ void keep_plugins_apart(std::filesystem::path own_plugins) {
   if (where_run == Place::anywhere) where_run = Place::wanted_apart;
   std::error_code error;
   own_folder() = std::filesystem::canonical(own_plugins, error);
-  keep_freed_memory();
 }
 
 bool must_be_tried(const std::filesystem::path& plugin) {
@@ -122,6 +121,7 @@ void step_aside() {
   }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(2);
+  use_large_pages();
   forget_environment();
   std::string why = confine_visit();
   if (why.empty()) why = hide_files(hidden());

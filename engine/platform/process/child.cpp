@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <malloc.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -12,7 +13,9 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iostream>
@@ -191,11 +194,24 @@ std::size_t memory_held() {
   return info.arena + info.hblkhd;
 }
 
-void keep_freed_memory() {
-  constexpr int megabyte = 1 << 20;
-  ::mallopt(M_MMAP_THRESHOLD, 32 * megabyte);
-  ::mallopt(M_TRIM_THRESHOLD, 64 * megabyte);
-  ::mallopt(M_TOP_PAD, megabyte);
+void keep_freed_memory(int reserve_MiB) {
+  constexpr int mebibyte = 1 << 20;
+  ::mallopt(M_MMAP_THRESHOLD, 32 * mebibyte);
+  ::mallopt(M_TRIM_THRESHOLD, 64 * mebibyte);
+  ::mallopt(M_TOP_PAD, reserve_MiB * mebibyte);
+}
+
+void use_large_pages() {
+  constexpr std::uintptr_t large_page = 2 << 20;
+  constexpr int reserve_MiB = 32;
+  keep_freed_memory(reserve_MiB);
+  const auto end = [] { return reinterpret_cast<std::uintptr_t>(::sbrk(0)); };
+  const std::uintptr_t before = end();
+  // Extends the heap by the reserve; volatile, or the compiler removes both calls.
+  void* volatile extended = std::malloc(std::size_t{1} << 20);
+  std::free(extended);
+  const std::uintptr_t start = (before + large_page - 1) / large_page * large_page;
+  if (end() > start) ::madvise(reinterpret_cast<void*>(start), end() - start, MADV_HUGEPAGE);
 }
 
 bool has_grown(std::size_t at_start) {

@@ -3,36 +3,14 @@
 #include <cmath>
 
 #include "nonio/sdk/format.h"
-#include "nonio/sdk/gathered_words.h"
 
 namespace nonio {
 
 namespace {
 
-constexpr std::string_view words_folder = "words/", gathered_folder = "gathered words/";
-
-bool is_gathered(std::string_view name) {
-  return name.starts_with("finding.") || name.starts_with("note.") || name.starts_with("term.");
-}
-
 using Texts = std::vector<std::pair<std::string, std::string>>;
 
 }  // namespace
-
-void gather_words(Templates& templates) {
-  std::map<std::string, Settings, std::less<>> gathered;
-  for (auto& [name, table] : templates.tables) {
-    const std::size_t end = name.find('/', words_folder.size());
-    if (!name.starts_with(words_folder) || end == std::string::npos) continue;
-    const std::string language = name.substr(words_folder.size(), end - words_folder.size());
-    Settings& all = gathered[std::string(gathered_folder) + language];
-    for (auto it = table.values.begin(); it != table.values.end();) {
-      const auto value = it++;
-      if (is_gathered(value->first)) all.values.insert(table.values.extract(value));
-    }
-  }
-  templates.tables.merge(gathered);
-}
 
 std::string localised(std::string number, std::string_view language) {
   if (language == "it" || language == "de" || language == "es")
@@ -41,15 +19,7 @@ std::string localised(std::string number, std::string_view language) {
 }
 
 std::string words(const Templates& templates, std::string_view language, std::string_view name) {
-  if (is_gathered(name))
-    if (const auto all = templates.tables.find(std::string(gathered_folder).append(language));
-        all != templates.tables.end())
-      return all->second.text(name);
-  const std::string folder = std::string(words_folder).append(language) + "/";
-  for (auto it = templates.tables.lower_bound(folder);
-       it != templates.tables.end() && it->first.compare(0, folder.size(), folder) == 0; ++it)
-    if (it->second.has(name)) return it->second.text(name);
-  return {};
+  return templates.tables.text(language, name);
 }
 
 std::string evidence_text(const Number& n) {

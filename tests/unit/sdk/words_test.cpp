@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "nonio/sdk/format.h"
-#include "nonio/sdk/gathered_words.h"
 
 namespace nonio {
 namespace {
@@ -87,13 +86,25 @@ TEST(Words, OnlyNumbersOfATextHaveTheDecimalSignOfTheLanguage) {
   EXPECT_EQ(text("file", "1.2"), "1.2");
 }
 
-TEST(Words, GatheredTheySayTheSame) {
-  Templates t = two_files();
-  expect_what_is_said(t);
-  gather_words(t);
-  expect_what_is_said(t);
-  gather_words(t);
-  expect_what_is_said(t);
+TEST(Words, AreTheSameIfTheyAreReadWhenTheyAreNeeded) {
+  const Templates now = two_files();
+  expect_what_is_said(now);
+  Templates later;
+  std::vector<std::string> read;
+  later.tables.read_later({"en", "english", "it"}, [&](const std::string& language, auto& tables) {
+    read.push_back(language);
+    for (const auto& [name, table] : now.tables)
+      if (name.starts_with("words/" + language + "/")) tables[name] = table;
+  });
+  EXPECT_EQ(words(later, "de", "note.moved"), "");
+  EXPECT_EQ(read, std::vector<std::string>());
+  const Templates copy = later;
+  expect_what_is_said(later);
+  EXPECT_EQ(read, (std::vector<std::string>{"en", "it"}));
+  EXPECT_TRUE(later.tables.contains("words/english/a"));
+  EXPECT_EQ(std::distance(copy.tables.begin(), copy.tables.end()), 4);
+  expect_what_is_said(copy);
+  EXPECT_EQ(read, (std::vector<std::string>{"en", "it", "english", "en", "english", "it"}));
 }
 
 }  // namespace

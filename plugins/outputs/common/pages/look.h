@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "nonio/reports/document.h"
-#include "nonio/sdk/settings.h"
+#include "nonio/sdk/templates.h"
 
 namespace nonio::pages {
 

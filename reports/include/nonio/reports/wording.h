@@ -9,6 +9,7 @@
 
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/settings.h"
+#include "nonio/sdk/templates.h"
 
 namespace nonio::reports {
 

@@ -22,8 +22,7 @@ using Said = std::map<std::string, std::string>;
 class KeptMachinesTest : public ::testing::Test {
  protected:
   KeptMachinesTest() : out_("kept") {
-    auto templates =
-        config::read_templates({fs::path(NONIO_WORDS).parent_path()}, context_.templates_sha256);
+    auto templates = config::read_templates({fs::path(NONIO_WORDS).parent_path()});
     EXPECT_TRUE(templates);
     context_.templates = std::move(*templates);
   }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "nonio/sdk/results.h"
-#include "nonio/sdk/settings.h"
+#include "nonio/sdk/templates.h"
 #include "nonio/sdk/units.h"
 
 /// Formatting of numbers and texts, independent of the locale of the process.

@@ -14,6 +14,7 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
+#include "nonio/sdk/templates.h"
 #include "nonio/sdk/units.h"
 
 /// A plugin is a shared library with one exported symbol. It registers objects of the six types
@@ -348,7 +349,7 @@ class Registry {
   ~Registry() = default;
 };
 
-#define NONIO_SDK_VERSION 22
+#define NONIO_SDK_VERSION 23
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)

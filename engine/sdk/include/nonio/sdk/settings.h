@@ -2,9 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -62,31 +60,6 @@ class Settings {
     const T* value = std::get_if<T>(&it->second);
     return value != nullptr ? *value : otherwise;
   }
-};
-
-/// Bytes that do not change, in memory or of a mapped file. Copies share them.
-class SharedBytes {
- public:
-  SharedBytes(std::string bytes = {}) {
-    const auto kept = std::make_shared<const std::string>(std::move(bytes));
-    bytes_ = *kept, owner_ = kept;
-  }
-  SharedBytes(const char* bytes) : SharedBytes(std::string(bytes)) {}
-  SharedBytes(std::shared_ptr<const void> owner, std::string_view bytes)
-      : owner_(std::move(owner)), bytes_(bytes) {}
-
-  operator std::string_view() const { return bytes_; }
-
- private:
-  std::shared_ptr<const void> owner_{};
-  std::string_view bytes_{};
-};
-
-/// The files of templates/: `*.toml` as settings under their path without the extension
-/// ("words/en"), all others (logo, fonts) as bytes under the whole path.
-struct Templates {
-  std::map<std::string, Settings, std::less<>> tables;
-  std::map<std::string, SharedBytes, std::less<>> files;
 };
 
 }  // namespace nonio

@@ -11,7 +11,7 @@
 #include "nonio/reports/quantity_words.h"
 #include "nonio/sdk/history.h"
 #include "nonio/sdk/results.h"
-#include "nonio/sdk/settings.h"
+#include "nonio/sdk/templates.h"
 
 /// The pages of a laboratory: worklist and history of its machines. All values are inputs; the
 /// pages compute nothing. Numbers are SI, dates "YYYY-MM-DD", uncertainties standard (k = 1), links

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "nonio/sdk/error.h"
-#include "nonio/sdk/settings.h"
+#include "nonio/sdk/templates.h"
 
 namespace nonio::workbench {
 
