@@ -202,16 +202,17 @@ void keep_freed_memory(int reserve_MiB) {
 }
 
 void use_large_pages() {
-  constexpr std::uintptr_t large_page = 2 << 20;
+  constexpr std::size_t large_page = 2 << 20;
   constexpr int reserve_MiB = 32;
   keep_freed_memory(reserve_MiB);
-  const auto end = [] { return reinterpret_cast<std::uintptr_t>(::sbrk(0)); };
-  const std::uintptr_t before = end();
+  const auto end = [] { return static_cast<char*>(::sbrk(0)); };
+  char* const before = end();
   // Extends the heap by the reserve; volatile, or the compiler removes both calls.
   void* volatile extended = std::malloc(std::size_t{1} << 20);
   std::free(extended);
-  const std::uintptr_t start = (before + large_page - 1) / large_page * large_page;
-  if (end() > start) ::madvise(reinterpret_cast<void*>(start), end() - start, MADV_HUGEPAGE);
+  const std::size_t into = reinterpret_cast<std::uintptr_t>(before) % large_page;
+  char* const start = before + (into == 0 ? 0 : large_page - into);
+  if (start < end()) ::madvise(start, static_cast<std::size_t>(end() - start), MADV_HUGEPAGE);
 }
 
 bool has_grown(std::size_t at_start) {

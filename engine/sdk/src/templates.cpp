@@ -36,7 +36,7 @@ void TemplateTables::read(std::string_view language) const {
 void TemplateTables::read_now(std::string_view language) const {
   const auto it = unread_.find(language);
   if (it == unread_.end()) return;
-  const std::string now = *it;
+  const std::string& now = *it;
   reader_(now, tables_);
   gather(now);
   unread_.erase(it);
