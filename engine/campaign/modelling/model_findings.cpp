@@ -92,6 +92,7 @@ namespace {
 // docs/dev/constants.md, M54.
 // detectable size of an effect that the readings do not determine, in standard deviations
 constexpr double undetermined_above = 10.0;
+constexpr double improbable = 0.05;  // p below which readings show a sign of an effect
 
 /// Whether the effect explains the readings as well as one of the model or of the best explanation.
 bool replaces_another(const model::Explanation& e, const model::Candidate& c) {
@@ -115,7 +116,7 @@ std::vector<Finding> no_sign_findings(const model::Explanation& e, const PartMod
   if (part.part.kind == model::Part::Kind::course) return out;
   std::vector<std::string> undetermined;
   for (const model::Candidate& c : e.candidates) {
-    if (!is_ranked(c) || c.score > 0.0) continue;
+    if (!is_ranked(c) || c.score > 0.0 || c.p < improbable) continue;
     if (replaces_another(e, c) || c.minimal_detectable > undetermined_above * e.comparison.fit.s) {
       undetermined.push_back(c.term.name());
       continue;

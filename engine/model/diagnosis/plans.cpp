@@ -105,6 +105,10 @@ double distance(const Observations& present, const Further& planned, const std::
     before = Imitation{std::move(here), *std::move(fitted)};
   }
   const auto after_plan = [&](std::vector<Term> all) {
+    std::erase_if(all, [&](const Term& t) {
+      const auto& known = planned.settled;
+      return std::find(known.begin(), known.end(), t.name()) != known.end();
+    });
     all.insert(all.end(), planned.set_up.begin(), planned.set_up.end());
     const auto fitted = imitate(planned.table, said, all);
     return fitted ? std::sqrt(std::max(squares(*fitted) - squares(before->fit), 0.0)) / s : 0.0;
@@ -224,7 +228,8 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
       if (other == catalogue.end()) continue;
       separates(distance(part.table, f, model, *columns * value, *other, s, before[alias]), alias);
     }
-    if (const std::string& same = candidate.term.effect->of_part; parts_alike && !same.empty())
+    if (const std::string& same = candidate.term.effect->of_part;
+        parts_alike && !same.empty() && o.size() > part.table.size())
       separates(from_part(part, f, model, *columns, value, s),
                 same + ":" + candidate.term.axis.name);
     // The same part moved along an axis without effect on this error shows nothing new.

@@ -17,6 +17,7 @@ struct Further {
   /// Rows of the part that is made once more, in the order of the added rows, and its name.
   std::vector<std::size_t> again{};
   std::string body{};
+  std::vector<std::string> settled{};  ///< terms of the model that are known afterwards
 };
 
 /// Repeats the last known values, because weights and columns need an entry for each reading.
@@ -30,9 +31,11 @@ std::vector<Further> further_in_space(const Part& part);
 
 /// Added to the names of the part that is made once more, and of its lines.
 inline constexpr const char* further_body = " (again)";
-/// Returns tables with one of the parts made once more: turned by 90 deg, or in another place.
+/// Returns tables with one of the parts made once more: turned by 90 deg, or in another place; and
+/// one without further readings in which the sizes of all parts are known.
 std::vector<Further> further_parts(const Part& part);
-/// Adds the unknowns of the set-up of the part that is made once more, like those in the model.
+/// Adds the unknowns of the set-up of the part that is made once more, like those in the model, and
+/// names those of the model that are known afterwards.
 void add_set_up_of_part(Further& further, const std::vector<Term>& model);
 /// Converts columns of an effect of the machine to those of the same error in the part, its fixture
 /// or the measuring machine: it moves with the part.

@@ -51,6 +51,11 @@ class OneMorePart {
   std::vector<Further> all() const {
     std::vector<Further> out;
     if (rows_.empty() || at_[0] == nullptr || at_[1] == nullptr) return out;
+    Further sizes{"known-size", "", o_, 0.0};
+    for (auto& line : sizes.table.lines) line.body_size_known = true;
+    if (std::any_of(o_.lines.begin(), o_.lines.end(),
+                    [](const auto& l) { return !l.body.empty() && !l.body_size_known; }))
+      out.push_back(std::move(sizes));
     Move turn{true, {}, {}};
     for (std::size_t k = 0; k < 3; ++k) turn.middle[k] = (box_.low[k] + box_.high[k]) / 2.0;
     out.push_back(moved("turned-part", "", turn));
@@ -130,6 +135,11 @@ std::vector<Further> further_parts(const Part& part) { return OneMorePart(part).
 void add_set_up_of_part(Further& further, const std::vector<Term>& model) {
   for (const Term& term : model) {
     const std::string& name = term.axis.name;
+    if (term.effect->is_nuisance && term.effect->instances) {
+      const auto left = term.effect->instances(further.table);
+      if (std::find(left.begin(), left.end(), name) == left.end())
+        further.settled.push_back(term.name());
+    }
     const bool of_body =
         !further.again.empty() && (name == further.body || name.starts_with(further.body + " "));
     if (!term.effect->is_nuisance || !of_body) continue;

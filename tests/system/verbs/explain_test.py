@@ -259,7 +259,7 @@ class Explain(VerbTest):
         e = self.explain()
         self.assertEqual(line.strip(), e["no_sign"])
         for c in e["candidates"]:
-            self.assertEqual(c["score"] <= 0, f" {c['effect']} (" in line, c)
+            self.assertEqual(c["score"] <= 0 and c["p"] >= 0.05, f" {c['effect']} (" in line, c)
         self.assertRegex(shown, r"with nothing missing, this test would still report an effect (about|less than) once in \d+ cases\.")
         self.assertNotIn(" of 200 shuffles", shown)
 

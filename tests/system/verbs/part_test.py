@@ -188,6 +188,23 @@ class Part(unittest.TestCase):
         plates.write(folder, (("P1", 0), ("P2", 90)), known=True)
         self.assertEqual(self.explain(folder)["together"], ["part-scale:X"])
 
+    def test_the_temperatures_of_a_plate_separate_two_scales(self):
+        """An X scale that is wrong by 20 um/m, or a part that shrank and a wrong Y scale."""
+        folder = self.top / "size"
+        folder.mkdir()
+        plates.plate(folder / "P1.csv", plates.grid(100), lambda x, y: (20e-3 * x, 0.0), 1.0, 0.0, self.rng, 0.0)
+        plates.write(folder, [("P1", 0)])
+        answer = self.explain(folder)
+        plan = answer["plans"][0]
+        self.assertEqual((plan["plan"], plan["readings"], sorted(plan["separates"])), ("known-size", 0, ["scale:X", "scale:Y"]))
+        self.assertIn("Stating the temperatures of the parts", answer["next"][0])
+        plates.write(folder, [("P1", 0)], known=True)
+        answer = self.explain(folder)
+        self.assertEqual(answer["verdict"]["effect"], "scale:X")
+        self.assertNotIn("scale:Y", next(c for c in answer["candidates"] if c["effect"] == "scale:X")["aliases"])
+        # The squared distance of the explanations, which differ by half of the scale in each coordinate.
+        self.assertGreater(plan["power"], 4.0)
+
     def test_the_plan_does_what_it_predicts(self):
         """With the plate that was planned, the same error of the fixture instead is named as such."""
         size = 1.0
