@@ -52,6 +52,8 @@ std::string title_of(const Source&, const TableFinding&);
 void add_models(const Source&, Blocks&);
 /// Readings with their model, and the residuals.
 void add_fit(const Source&, const ModelFit&, Blocks&);
+/// Maps of the errors of parts, in place of the figure of `add_fit`; false if there are no parts.
+bool add_part_maps(const Source&, const ModelFit&, Blocks&);
 /// One page of figures per model.
 void add_residuals(const Source&, Blocks&);
 /// Nine figures in fixed positions on one page, with their heading.

@@ -438,7 +438,7 @@ void add_models(const Source& source, Blocks& blocks) {
     blocks.push_back(
         {Heading{source.pictures.get("model.heading", {{"part", fit.part}}), 1}, field});
     add_what_it_says(source, fit, blocks);
-    add_fit(source, fit, blocks);
+    if (!add_part_maps(source, fit, blocks)) add_fit(source, fit, blocks);
     add_candidates(source, fit, blocks);
     add_parameters(source, fit, blocks);
     add_falling_error(source, fit, blocks);

@@ -226,5 +226,56 @@ TEST(Residuals, AMultipleOfThePeriodHasPhaseZeroWhateverItsLastDigit) {
   EXPECT_NEAR(phase[3], 0.05, 1e-12);
 }
 
+TEST_F(ModelReport, ErrorsOfAPartAreDrawnOverItsFeatures) {
+  Observations o;
+  o.measurement = "P1";
+  o.axes = {{"X", false, {}, {}}, {"Y", false, {}, {}}};
+  ModelFit fit;
+  fit.part = fit.axis = "XY";
+  fit.measurements = {"P1"};
+  fit.effects = {{"scale:X", true, {}}, {"body-turn:P1", false, {}}};
+  fit.effects[1].is_set_up = true;
+  for (const char* name : {"P1 X", "P1 Y"}) {
+    o.lines.push_back({name, {}});
+    o.lines.back().body = "P1";
+    o.lines.back().sense[o.lines.size() - 1] = 1.0;
+  }
+  for (std::uint32_t feature = 0; feature < 4; ++feature)
+    for (std::uint32_t line = 0; line < 2; ++line) {
+      o.axes[0].position.push_back(feature % 2 == 0 ? 0.0 : 0.1);
+      o.axes[1].position.push_back(feature < 2 ? 0.0 : 0.1);
+      o.line.push_back(line);
+      o.source_line.push_back(feature + 2);
+      o.deviation.push_back(line == 0 ? 9e-6 : 0.0);
+      fit.measurement.push_back(0), fit.source_line.push_back(feature + 2), fit.run.push_back(1);
+      fit.target.push_back(0.0), fit.direction.push_back(0);
+      fit.time.push_back(NAN), fit.temperature.push_back(NAN);
+      fit.deviation.push_back(o.deviation.back());
+      fit.residual.push_back(line == 0 ? 1e-6 : 0.0), fit.weight.push_back(1.0);
+      fit.effects[0].contribution.push_back(line == 0 ? 3e-6 : 0.0);
+      fit.effects[1].contribution.push_back(line == 0 ? 5e-6 : 0.0);
+    }
+  Case c = simple_case();
+  c.campaign.measurements = {{"P1", "part", "", "", "p.csv", "", {}, {}}};
+  c.observations = {o};
+  c.results.models = {fit};
+  c.results.analyses.clear();
+  const Settings options = defaults(plugins.outputs.front().info);
+  const auto text = [&] {
+    const auto result =
+        plugins.outputs.front().write({c.campaign, c.observations, c.results, options, templates});
+    EXPECT_TRUE(result) << result.error().message;
+    std::string all;
+    for (const auto& page : read_pdf(result->artifacts.front().bytes).pages) all += flat(page);
+    return all;
+  };
+  const std::string map = text();
+  EXPECT_TRUE(has(map, "P1: errors, RMS 2.83 \u00b5m")) << map;  // 4 um in X, 0 in Y
+  EXPECT_TRUE(has(map, "P1: what the model leaves, RMS 0.707 \u00b5m")) << map;
+  EXPECT_TRUE(has(map, "2000 times enlarged")) << map;  // 100 mm / 8 / 4 um is 3125
+  c.observations.front().lines[0].body.clear(), c.observations.front().lines[1].body.clear();
+  EXPECT_FALSE(has(text(), "times enlarged"));
+}
+
 }  // namespace
 }  // namespace nonio::fixtures::model_report_test
