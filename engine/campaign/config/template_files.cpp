@@ -97,6 +97,17 @@ struct UnreadFile {
 };
 using Unread = std::map<std::string, std::map<std::string, UnreadFile>>;
 
+/// The program's own files are valid, so an error is one of the installation.
+void add_tables(const std::map<std::string, UnreadFile>& files, TemplateTables::Map& tables) {
+  for (const auto& [name, file] : files) {
+    auto settings = parse_settings(file.bytes, file.path);
+    if (!settings)
+      throw std::runtime_error(file.path + ":" + std::to_string(settings.error().line) + ": " +
+                               settings.error().message + "; install the program again");
+    tables[table_name(name)] = std::move(*settings);
+  }
+}
+
 /// Adds the words of causes, and `unread` when it is needed.
 Expected<void> complete(Templates& templates, Unread unread) {
   auto causes = causes_in(templates);
@@ -113,12 +124,7 @@ Expected<void> complete(Templates& templates, Unread unread) {
                               [causes = std::move(*causes), unread = std::move(unread)](
                                   const std::string& language, TemplateTables::Map& tables) {
                                 if (const auto files = unread.find(language); files != unread.end())
-                                  for (const auto& [name, file] : files->second) {
-                                    auto settings = parse_settings(file.bytes, file.path);
-                                    if (!settings)
-                                      throw std::runtime_error(settings.error().message);
-                                    tables[table_name(name)] = std::move(*settings);
-                                  }
+                                  add_tables(files->second, tables);
                                 add_words(*causes, language, tables);
                               });
   return {};
