@@ -36,8 +36,9 @@ std::vector<double> without_effects(const ModelFit& fit) {
   return out;
 }
 
-/// std::nullopt if the measurement is not a part with features in X and Y.
-std::optional<PartMap> map_of(const Source& source, const ModelFit& fit, std::uint32_t m) {
+/// `before`: `without_effects`. std::nullopt if the measurement is not a part with features in X and Y.
+std::optional<PartMap> map_of(const Source& source, const ModelFit& fit,
+                              const std::vector<double>& before, std::uint32_t m) {
   const auto& all = source.in.campaign.measurements;
   const auto measurement = std::find_if(
       all.begin(), all.end(), [&](const auto& one) { return one.id == fit.measurements[m]; });
@@ -51,7 +52,6 @@ std::optional<PartMap> map_of(const Source& source, const ModelFit& fit, std::ui
   const bool is_part = std::any_of(o.lines.begin(), o.lines.end(),
                                    [](const auto& line) { return !line.body.empty(); });
   if (!is_part || x == nullptr || y == nullptr || rows.size() != o.size()) return std::nullopt;
-  const std::vector<double> before = without_effects(fit);
   std::map<std::uint32_t, Feature> features;
   for (std::size_t j = 0; j < rows.size(); ++j) {
     Feature& f = features[o.source_line_of(j)];
@@ -141,9 +141,10 @@ void leave_worst(std::vector<PartMap>& maps) {
 
 bool add_part_maps(const Source& source, const ModelFit& fit, Blocks& blocks) {
   const std::string field = "map of the errors of " + fit.part;
+  const std::vector<double> before = without_effects(fit);
   std::vector<PartMap> maps;
   for (std::uint32_t m = 0; m < fit.measurements.size(); ++m) {
-    auto map = map_of(source, fit, m);
+    auto map = map_of(source, fit, before, m);
     if (!map || map->features.empty()) return false;
     maps.push_back(std::move(*map));
   }

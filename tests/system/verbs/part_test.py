@@ -305,8 +305,8 @@ class Part(unittest.TestCase):
         self.assertEqual(part["left_out"], 2 * (len(larger) - len(inside)))
         self.assertGreater(part["inside_U"], 0.9)
         self.assertIn(f"{part['left_out']}, not counted", part["says"])
-        beside = self.campaign("beside", "straightness:EYX", known=True, holes=[(x + 2 * plates.SIZE, y) for x, y in inside], parts=(("P1", 0),))
-        done = subprocess.run([NONIO, "model", "compare", beside, "--model-of", seen], capture_output=True, text=True, check=False)
+        other_place = self.campaign("other-place", "straightness:EYX", known=True, holes=[(x + 2 * plates.SIZE, y) for x, y in inside], parts=(("P1", 0),))
+        done = subprocess.run([NONIO, "model", "compare", other_place, "--model-of", seen], capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 2, done.stdout)
         self.assertIn("all 200 readings are outside the places that the model was fitted to", done.stderr)
 
