@@ -515,17 +515,17 @@ class OfMachine {
         at->second += (at->second.empty() ? "" : ", ") + one;
   }
 
-  /// The point that was judged last, of several measurements of its campaign.
+  /// The last point; of several measurements of its campaign the one that was judged.
   const reports::HistoryPoint* judged_last(const HistorySeries& s) const {
+    const reports::HistoryPoint& last = s.points.back();
     const auto k = static_cast<std::size_t>(&s - d_.series.data());
     if (k >= m_.followed.size() && !m_.shown[k - m_.followed.size()].judged.empty()) {
       const auto& judged = m_.stored.results[m_.shown[k - m_.followed.size()].judged.back()];
-      for (const reports::HistoryPoint& p : s.points)
-        if (p.campaign == m_.stored.campaigns[judged.campaign].id &&
-            p.value == si(judged.value, s.unit))
-          return &p;
+      if (m_.stored.campaigns[judged.campaign].id == last.campaign)
+        for (const reports::HistoryPoint& p : s.points)
+          if (p.campaign == last.campaign && p.value == si(judged.value, s.unit)) return &p;
     }
-    return &s.points.back();
+    return &last;
   }
 
   void soon() {

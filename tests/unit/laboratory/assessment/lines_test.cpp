@@ -368,6 +368,12 @@ TEST(WorklistLines, SoonIsTheLastValueWithItsForecast) {
   auto& last = lab.machines[0].stored().results.back();
   last.value = 7.6, last.decision = "cannot be decided";
   for (const WorkItem& l : lab.lines()) EXPECT_NE(l.kind, Kind::soon);
+  // The last value was measured without a limit: the forecast follows it, and so does the line.
+  last.value = 7.3, last.tolerance.reset(), last.decision.clear();
+  lines = lab.lines();
+  ASSERT_EQ(lines[0].kind, Kind::soon);
+  EXPECT_NEAR(*lines[0].value, 7.3e-6, 1e-12);
+  EXPECT_EQ(lines[0].campaign, lab.machines[0].stored().campaigns.back().id);
 }
 
 TEST(WorklistLines, ManyOfOneKindAreOneLine) {
